@@ -15,8 +15,8 @@ namespace pectora {
 
 /// One input or output of a stage.
 struct Port {
-  const char* name;                 ///< "ct"
-  std::vector<const char*> kinds;   ///< accepted kinds, e.g. {"Mesh", "Points"}; for an output exactly one
+  const char* name = "";            ///< "ct"
+  std::vector<const char*> kinds = {};   ///< accepted kinds, e.g. {"Mesh", "Points"}; for an output exactly one
   bool isOptional = false;          ///< inputs only
   bool isList = false;              ///< inputs only: takes any number of values
 };
