@@ -7,32 +7,20 @@
 namespace pectora {
 namespace {
 
-// Smoothstep: 0 at 0, 1 at 1, flat at both.
-double fade(double s) { return s * s * (3 - 2 * s); }
-
-// The parameter at which a control point has its greatest influence.
-double greville(const Curve& curve, int control) {
-  double sum = 0;
-  for (int k = 1; k <= curve.degree; ++k) sum += curve.knots[control + k];
-  return sum / curve.degree;
-}
-
-// Moves the inner end handles to `scale` times their length, keeping ends and end tangents.
+// A cubic piece with both end handles scaled, ends and end tangents kept.
 Curve withHandles(Curve curve, double scale) {
   std::vector<Vec3>& p = curve.controls;
-  const std::size_t n = p.size();
   p[1] = lerp(p[0], p[1], scale);
-  p[n - 2] = lerp(p[n - 1], p[n - 2], scale);
+  p[2] = lerp(p[3], p[2], scale);
   return curve;
 }
 
-// Scales the handles until the curve has the wanted length, or comes as close as handles between 0.3 and 2.5 times
-// their length allow. Longer handles make a longer curve here, so bisection finds it.
+// Scales the handles until the curve has the wanted length, or comes as close as handles of 0 (straight) to 4 times
+// their length allow. Longer handles make a longer curve, so bisection finds it.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0.3, high = 2.5;
-  if (withHandles(curve, low).length() >= length) return withHandles(curve, low);
+  double low = 0, high = 4;
   if (withHandles(curve, high).length() <= length) return withHandles(curve, high);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
     (withHandles(curve, middle).length() < length ? low : high) = middle;
   }
@@ -62,13 +50,10 @@ std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion
         rotates = false;
       }
     }
-    // Control points fade from fixed at the rib to moving with the end.
+    // The rib's end stays with its handle; the other end takes its handle along.
     Curve curve = rest;
-    for (std::size_t i = 0; i < curve.controls.size(); ++i) {
-      const Vec3 p = rest.controls[i];
-      const Vec3 full = rotates ? sternum(p) - p : endMove;
-      curve.controls[i] = p + full * fade(greville(rest, int(i)));
-    }
+    curve.controls[3] = end + endMove;
+    curve.controls[2] = rotates ? sternum(rest.controls[2]) : rest.controls[2] + endMove;
     const double length = rest.length();
     const bool still = norm(endMove) < 1e-12;
     MovedCartilage result{still ? curve : withLength(curve, length), 0};

@@ -23,9 +23,9 @@ struct MovedCartilage {
   double strain = 0;   ///< (new arc length - old) / old
 };
 
-/// Carries every cartilage along with the sternum. The costochondral end stays with its tangent, the sternal end moves
-/// rigidly, control points between fade from one to the other by a cubic Hermite, and the end handles are scaled
-/// by bisection until the arc length is the old one; what cannot be kept is reported as strain.
+/// Carries every cartilage along with the sternum. The costochondral end stays with its tangent, the medial end moves
+/// with the sternum (rigidly) or with the cartilage that it joins, and both end handles are scaled by bisection until the arc
+/// length is the old one; what cannot be kept is reported as strain.
 /// Returns one entry for each of cage.cartilages, in order.
 std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion& sternum);
 

@@ -10,7 +10,6 @@
 namespace pectora {
 namespace {
 
-constexpr int kCartilageControls = 7;
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
@@ -68,7 +67,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& se
           continue;
         }
         const Vec3 arrival = normalized(arrivalDirection(side, number));
-        cartilage.curve = hermiteCurve(start, along, notch->position, arrival, settings.handle, kCartilageControls);
+        cartilage.curve = hermiteCurve(start, along, notch->position, arrival, settings.handle);
       } else {
         const Cartilage* above = findCartilage(cage, side, number - 1);
         if (!above) {
@@ -79,7 +78,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& se
         cartilage.joinsAt = 0.5;
         const Vec3 end = above->curve.at(cartilage.joinsAt);
         cartilage.curve = hermiteCurve(start, along, end, normalized(above->curve.derivative(cartilage.joinsAt)),
-                                       settings.handle, kCartilageControls);
+                                       settings.handle);
       }
       cage.cartilages.push_back(std::move(cartilage));
     }

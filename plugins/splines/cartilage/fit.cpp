@@ -56,27 +56,9 @@ double rmsDistance(const Curve& curve, std::span<const Vec3> points) {
   return points.empty() ? 0 : std::sqrt(sum / double(points.size()));
 }
 
-Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle, int controls) {
+Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle) {
   const double reach = handle * distance(a, b);
-  // One cubic lies in the space of the spline, so a least-squares fit to its points is exact.
-  const Vec3 p1 = a + tangentA * reach, p2 = b - tangentB * reach;
-  const int samples = 4 * controls;
-  Curve curve;
-  curve.knots = clampedKnots(controls, 3);
-  curve.controls.assign(controls, {});
-  Eigen::MatrixXd basisMatrix = Eigen::MatrixXd::Zero(samples, controls), right(samples, 3);
-  for (int i = 0; i < samples; ++i) {
-    const double u = double(i) / (samples - 1), v = 1 - u;
-    const Vec3 p = a * (v * v * v) + p1 * (3 * v * v * u) + p2 * (3 * v * u * u) + b * (u * u * u);
-    const BasisWeights w = basis(curve.knots, 3, u);
-    for (int k = 0; k <= 3; ++k) basisMatrix(i, w.first + k) = w.weights[k];
-    right.row(i) << p.x, p.y, p.z;
-  }
-  const Eigen::MatrixXd solved = basisMatrix.colPivHouseholderQr().solve(right);
-  for (int j = 0; j < controls; ++j) curve.controls[j] = {solved(j, 0), solved(j, 1), solved(j, 2)};
-  curve.controls.front() = a;
-  curve.controls.back() = b;
-  return curve;
+  return {3, clampedKnots(4, 3), {a, a + tangentA * reach, b - tangentB * reach, b}};
 }
 
 }  // namespace pectora

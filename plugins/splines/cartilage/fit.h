@@ -13,8 +13,8 @@ Curve fitCurve(std::span<const Vec3> points, int controls);
 /// Root mean square distance from the points to the curve, mm.
 double rmsDistance(const Curve& curve, std::span<const Vec3> points);
 
-/// Clamped cubic B-spline with `controls` >= 4 control points that is the cubic Hermite curve from `a`, leaving along
-/// `tangentA`, to `b`, arriving along `tangentB` (unit vectors); the handles are `handle` times the distance a-b.
-Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle, int controls);
+/// The cubic Hermite curve from `a`, leaving along `tangentA`, to `b`, arriving along `tangentB` (unit vectors), as a clamped
+/// B-spline with four control points; the handles are `handle` times the distance a-b. C'(0) = 3 (P1 - P0).
+Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle);
 
 }  // namespace pectora
