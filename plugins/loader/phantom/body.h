@@ -38,8 +38,8 @@ class Level {
  private:
   static constexpr int kHalf = 150;  // columns from -150 to 150 mm, one each mm
   double lookup(const std::vector<float>& table, double x) const;
-  double z_, skinShare_;
-  std::vector<float> bone_, inner_, outer_, skin_;
+  double z_;
+  std::vector<float> bone_, skinMove_, inner_, outer_, skin_;
 };
 
 /// The undeformed torso, its deformity and its pose. Positions taken and given are LPS mm of the CT unless said.

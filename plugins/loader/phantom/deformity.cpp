@@ -6,6 +6,7 @@ namespace pectora::phantom {
 namespace {
 
 constexpr double kPivotMm = 160;      // pivot cranial of the deepest point, science.md section 3
+constexpr double kEvenMm = 9;         // how far the fat evens out the bone's displacement
 constexpr double kDecayFrom = 108;    // below the sternal body the pit runs out into the epigastrium
 constexpr double kDecayTo = 200;
 
@@ -22,6 +23,18 @@ Deformity::Deformity(const Skeleton& skeleton, const PitShape& shape) : skeleton
   skinShare_ = 0.8 + 0.15 * std::clamp((4 * width_ - 100) / 180, 0.0, 1.0);
   const double deepestS = shape.type == PitType::trench ? 70 : riseTo_;
   deepestZ_ = skeleton.sternum.at(deepestS).z;
+  const double deepest = bone(deepestX(), deepestZ_), evenedDeepest = evened(deepestX(), deepestZ_);
+  skinGain_ = evenedDeepest != 0 ? skinShare_ * deepest / evenedDeepest : skinShare_;
+}
+
+double Deformity::evened(double x, double z) const {
+  double sum = 0, weights = 0;
+  for (double offset = -18; offset <= 18; offset += 3) {
+    const double weight = std::exp(-offset * offset / (2 * kEvenMm * kEvenMm));
+    sum += weight * bone(x + offset, z);
+    weights += weight;
+  }
+  return sum / weights;
 }
 
 double Deformity::centerX(double z) const {

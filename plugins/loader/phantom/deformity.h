@@ -31,6 +31,9 @@ class Deformity {
   double bone(double x, double z) const;
   /// Part of the bone's displacement that the skin follows, 0.8 (narrow pits) to 0.95 (wide ones).
   double skinShare() const { return skinShare_; }
+  /// Displacement of the skin at (x, z): the bone's across the body, evened out as the fat does (a Gaussian of 9 mm),
+  /// with skinShare() of the bone's at the deepest place.
+  double skin(double x, double z) const { return skinGain_ * evened(x, z); }
   /// Level of the deepest point, and its x.
   double deepestZ() const { return deepestZ_; }
   double deepestX() const { return centerX(deepestZ_); }
@@ -41,10 +44,11 @@ class Deformity {
   double along(double z) const;
   double elevation(double z) const;
   double fade(double x, double z) const;
+  double evened(double x, double z) const;
 
   const Skeleton* skeleton_;
   PitShape shape_;
-  double exponent_, width_, riseFrom_, riseTo_, skinShare_, deepestZ_;
+  double exponent_, width_, riseFrom_, riseTo_, skinShare_, skinGain_, deepestZ_;
 };
 
 }  // namespace pectora::phantom
