@@ -42,10 +42,10 @@ std::vector<float> frontLine(const PolarTable& surface, double z, int half) {
 Level::Level(const Torso& torso, const Deformity& deformity, double z)
     : z_(z), inner_(frontLine(torso.inner, z, kHalf)), outer_(frontLine(torso.muscle, z, kHalf)),
       skin_(frontLine(torso.skin, z, kHalf)) {
-  for (int x = -kHalf; x <= kHalf; ++x) {
-    bone_.push_back(float(deformity.bone(x, z)));
-    skinMove_.push_back(float(deformity.skin(x, z)));
-  }
+  const DeformityLevel deformed = deformity.at(z);
+  for (int x = -kHalf; x <= kHalf; ++x) bone_.push_back(float(deformed.bone(x)));
+  for (int x = -kHalf; x <= kHalf; ++x)
+    skinMove_.push_back(float(deformity.skinGain() * evenedOut([&](double at) { return lookup(bone_, at); }, x)));
 }
 
 double Level::lookup(const std::vector<float>& table, double x) const {
@@ -109,11 +109,11 @@ std::shared_ptr<const Mesh> Body::tube(const PolarTable& surface, double bottom,
   return mesh;
 }
 
-double Body::sternalBodyBottom() const {
+bool Body::isDeepLevel(double z) const {
   const SternumPlan& sternum = torso->skeleton.sternum;
-  return sternum.at(sternum.bodyLength - 2).z;
+  const double top = sternum.at(0).z, bottom = sternum.at(sternum.bodyLength).z;
+  return z >= bottom && z <= (top + bottom) / 2;
 }
-double Body::sternalBodyTop() const { return torso->skeleton.sternum.at(8).z; }
 
 LevelMetrics Body::measure(double z) const {
   LevelMetrics metrics;
