@@ -82,7 +82,7 @@ struct Anatomy : Value {
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
   const Rib* rib(Side side, int number) const;   ///< nullptr if not found
-  /// The level with the smallest sternum-to-vertebra distance along the sternal body; nullptr if none.
+  /// The level with the smallest sternum-to-vertebra distance in the caudal half of the sternal body; nullptr if none.
   const LevelMetrics* deepestLevel() const;
 };
 

@@ -36,10 +36,11 @@ const Rib* Anatomy::rib(Side side, int number) const {
 }
 
 const LevelMetrics* Anatomy::deepestLevel() const {
-  // Only levels between the two ends of the sternal body count.
+  // Only the caudal half of the sternal body counts: the normal chest is narrowest at the body's upper end.
+  const double middle = (sternum.manubriosternalJoint.z + sternum.xiphisternalJoint.z) / 2;
   const LevelMetrics* best = nullptr;
   for (const LevelMetrics& level : metrics) {
-    if (level.z > sternum.manubriosternalJoint.z || level.z < sternum.xiphisternalJoint.z) continue;
+    if (level.z > middle || level.z < sternum.xiphisternalJoint.z) continue;
     if (!best || level.sternumToVertebra < best->sternumToVertebra) best = &level;
   }
   return best;

@@ -40,9 +40,12 @@ std::vector<float> frontLine(const PolarTable& surface, double z, int half) {
 }  // namespace
 
 Level::Level(const Torso& torso, const Deformity& deformity, double z)
-    : z_(z), skinShare_(deformity.skinShare()), inner_(frontLine(torso.inner, z, kHalf)),
-      outer_(frontLine(torso.muscle, z, kHalf)), skin_(frontLine(torso.skin, z, kHalf)) {
-  for (int x = -kHalf; x <= kHalf; ++x) bone_.push_back(float(deformity.bone(x, z)));
+    : z_(z), inner_(frontLine(torso.inner, z, kHalf)), outer_(frontLine(torso.muscle, z, kHalf)),
+      skin_(frontLine(torso.skin, z, kHalf)) {
+  const DeformityLevel deformed = deformity.at(z);
+  for (int x = -kHalf; x <= kHalf; ++x) bone_.push_back(float(deformed.bone(x)));
+  for (int x = -kHalf; x <= kHalf; ++x)
+    skinMove_.push_back(float(deformity.skinGain() * evenedOut([&](double at) { return lookup(bone_, at); }, x)));
 }
 
 double Level::lookup(const std::vector<float>& table, double x) const {
@@ -52,19 +55,19 @@ double Level::lookup(const std::vector<float>& table, double x) const {
 }
 
 // In a column the displacement is 0 behind the vertebral front, grows linearly to the pleura, is that of the bone up
-// to the outside of the bone, and falls linearly to the skin's share in the fat.
+// to the outside of the bone, and goes linearly over to that of the skin in the fat.
 double Level::displacement(double x, double y) const {
-  const double bone = lookup(bone_, x);
-  if (bone == 0 || y >= kVertebralFront) return 0;
+  const double bone = lookup(bone_, x), skinMove = lookup(skinMove_, x);
+  if ((bone == 0 && skinMove == 0) || y >= kVertebralFront) return 0;
   const double inner = lookup(inner_, x);
   if (y > inner) return bone * (kVertebralFront - y) / (kVertebralFront - inner);
   const double outer = lookup(outer_, x), skin = lookup(skin_, x);
-  return bone * (1 - (1 - skinShare_) * std::clamp((outer - y) / (outer - skin), 0.0, 1.0));
+  return bone + (skinMove - bone) * std::clamp((outer - y) / (outer - skin), 0.0, 1.0);
 }
 
 double Level::undeformedY(double x, double y) const {
-  const double bone = lookup(bone_, x);
-  if (bone == 0 || y >= kVertebralFront) return y;
+  const double bone = lookup(bone_, x), skinMove = lookup(skinMove_, x);
+  if ((bone == 0 && skinMove == 0) || y >= kVertebralFront) return y;
   const double inner = lookup(inner_, x);
   if (y > inner + bone) {
     // y = Y + bone (v - Y) / (v - inner), solved for Y.
@@ -73,8 +76,8 @@ double Level::undeformedY(double x, double y) const {
   }
   const double outer = lookup(outer_, x), skin = lookup(skin_, x);
   if (y >= outer + bone) return y - bone;
-  const double skinNow = skin + skinShare_ * bone;
-  if (y <= skinNow) return y - skinShare_ * bone;
+  const double skinNow = skin + skinMove;
+  if (y <= skinNow) return y - skinMove;
   return skin + (outer - skin) * (y - skinNow) / (outer + bone - skinNow);
 }
 
@@ -106,11 +109,11 @@ std::shared_ptr<const Mesh> Body::tube(const PolarTable& surface, double bottom,
   return mesh;
 }
 
-double Body::sternalBodyBottom() const {
+bool Body::isDeepLevel(double z) const {
   const SternumPlan& sternum = torso->skeleton.sternum;
-  return sternum.at(sternum.bodyLength - 2).z;
+  const double top = sternum.at(0).z, bottom = sternum.at(sternum.bodyLength).z;
+  return z >= bottom && z <= (top + bottom) / 2;
 }
-double Body::sternalBodyTop() const { return torso->skeleton.sternum.at(8).z; }
 
 LevelMetrics Body::measure(double z) const {
   LevelMetrics metrics;

@@ -38,8 +38,8 @@ class Level {
  private:
   static constexpr int kHalf = 150;  // columns from -150 to 150 mm, one each mm
   double lookup(const std::vector<float>& table, double x) const;
-  double z_, skinShare_;
-  std::vector<float> bone_, inner_, outer_, skin_;
+  double z_;
+  std::vector<float> bone_, skinMove_, inner_, outer_, skin_;
 };
 
 /// The undeformed torso, its deformity and its pose. Positions taken and given are LPS mm of the CT unless said.
@@ -56,9 +56,8 @@ struct Body {
   /// Surface of rows along z and columns around the body, as an open tube of triangles.
   std::shared_ptr<const Mesh> tube(const PolarTable& surface, double bottom, double top, double spacing) const;
 
-  /// Levels along the sternal body: caudal and cranial end, body frame.
-  double sternalBodyBottom() const;
-  double sternalBodyTop() const;
+  /// Whether a level of the body frame is in the caudal half of the sternal body, where the deepest level is sought.
+  bool isDeepLevel(double bodyZ) const;
   /// T, B and C at a level of the body frame; B and C are 0 where there is no sternum.
   LevelMetrics measure(double bodyZ) const;
 };

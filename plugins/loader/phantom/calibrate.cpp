@@ -56,7 +56,7 @@ double hallerIndex(const Body& body, const Grid& grid, double* gap = nullptr) {
   LevelMetrics deepest;
   for (int k = 0; k < grid.size[2]; ++k) {
     const double z = body.pose.levelToBody(grid.origin.z + k * grid.spacing.z);
-    if (z < body.sternalBodyBottom() || z > body.sternalBodyTop()) continue;
+    if (!body.isDeepLevel(z)) continue;
     const LevelMetrics metrics = body.measure(z);
     if (deepest.transverse == 0 || metrics.sternumToVertebra < deepest.sternumToVertebra) deepest = metrics;
   }

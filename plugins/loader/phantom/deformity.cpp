@@ -6,6 +6,7 @@ namespace pectora::phantom {
 namespace {
 
 constexpr double kPivotMm = 160;      // pivot cranial of the deepest point, science.md section 3
+constexpr double kTwist = 0.6;         // part of a lopsided pit that turns the sternum; cartilages bend for the rest
 constexpr double kDecayFrom = 108;    // below the sternal body the pit runs out into the epigastrium
 constexpr double kDecayTo = 200;
 
@@ -22,23 +23,55 @@ Deformity::Deformity(const Skeleton& skeleton, const PitShape& shape) : skeleton
   skinShare_ = 0.8 + 0.15 * std::clamp((4 * width_ - 100) / 180, 0.0, 1.0);
   const double deepestS = shape.type == PitType::trench ? 70 : riseTo_;
   deepestZ_ = skeleton.sternum.at(deepestS).z;
+
+  // The profile counts as 1 where the sternum lies deepest.
+  DeformityLevel level = at(deepestZ_);
+  level.amount = 1, level.torsionSlope = 0;
+  deepestX_ = std::abs(level.slope) < 1e-9 ? 0 : std::copysign(level.plate, level.slope);
+  norm_ = level.bone(deepestX_);
+  skinGain_ = skinShare_ * norm_ / evenedOut([&](double x) { return level.bone(x); }, deepestX_);
 }
 
-double Deformity::centerX(double z) const {
-  if (shape_.type != PitType::trench) return shape_.eccentricity;
+double DeformityLevel::raw(double x) const {
+  const double from = x - centerX;
+  const double fade = step(junction, 0.45 * junction, std::abs(x));
+  return std::exp(-std::pow(std::abs(from) / (from < 0 ? widthRight : widthLeft), exponent)) * fade;
+}
+
+double DeformityLevel::bone(double x) const {
+  // Beyond the sternum's edge the rigid plate goes over into the pit's own shape.
+  const double edge = std::clamp(x, -plate, plate);
+  const double within = mean + slope * edge;
+  const double beyond = step(std::max(junction, plate + 5), plate, std::abs(x));
+  const double shape = x == edge ? within : raw(x) + (within - raw(edge)) * beyond;
+  return amount * shape + torsionSlope * edge * beyond;
+}
+
+DeformityLevel Deformity::at(double z) const {
+  const double s = skeleton_->sternum.arcAt(z);
+  DeformityLevel level;
   // A trench runs obliquely, further from the midline below.
-  return shape_.eccentricity * (0.5 + step(-45, 110, skeleton_->sternum.arcAt(z)));
-}
+  level.centerX = shape_.eccentricity * (shape_.type == PitType::trench ? 0.5 + step(-45, 110, s) : 1);
+  level.widthRight = width_ * (1 + shape_.asymmetry);
+  level.widthLeft = width_ * (1 - shape_.asymmetry);
+  level.exponent = exponent_;
+  level.junction = junctionX(*skeleton_, z);
+  const double at[] = {-51, -5, 100, 132}, halves[] = {28, 19.5, 19.5, 9};
+  level.plate = std::min(piecewise(at, halves, s), level.junction - 3);
 
-double Deformity::across(double x, double z) const {
-  const double from = x - centerX(z);
-  const double width = width_ * (1 + (from < 0 ? shape_.asymmetry : -shape_.asymmetry));
-  return std::exp(-std::pow(std::abs(from) / width, exponent_)) * fade(x, z);
-}
+  // Regression of the raw profile over the sternum's width.
+  double sum = 0, moment = 0, squares = 0;
+  for (int i = -4; i <= 4; ++i) {
+    const double x = level.plate * i / 4, value = level.raw(x);
+    sum += value, moment += value * x, squares += x * x;
+  }
+  level.mean = sum / 9;
+  level.slope = kTwist * moment / squares;
 
-double Deformity::fade(double x, double z) const {
-  const double junction = junctionX(*skeleton_, z);
-  return step(junction, 0.45 * junction, std::abs(x));
+  const double remaining = shape_.depth > 0 ? std::clamp(1 - shape_.lift / shape_.depth, 0.0, 1.0) : 0;
+  level.amount = (shape_.depth * along(z) - shape_.lift * elevation(z)) / norm_;
+  level.torsionSlope = std::tan(radians(shape_.torsionDeg)) * along(z) * remaining;
+  return level;
 }
 
 double Deformity::along(double z) const {
@@ -47,16 +80,8 @@ double Deformity::along(double z) const {
 }
 
 double Deformity::elevation(double z) const {
-  const double s = skeleton_->sternum.arcAt(z);
   const double turned = std::clamp((deepestZ_ + kPivotMm - z) / kPivotMm, 0.0, 1.0);
-  return turned * step(kDecayTo, kDecayFrom, s);
-}
-
-double Deformity::bone(double x, double z) const {
-  const double shape = across(x, z);
-  const double remaining = shape_.depth > 0 ? std::clamp(1 - shape_.lift / shape_.depth, 0.0, 1.0) : 0;
-  const double torsion = std::tan(radians(shape_.torsionDeg)) * x * bell(x, 45) * fade(x, z) * along(z) * remaining;
-  return (shape_.depth * along(z) - shape_.lift * elevation(z)) * shape + torsion;
+  return turned * step(kDecayTo, kDecayFrom, skeleton_->sternum.arcAt(z));
 }
 
 }  // namespace pectora::phantom

@@ -36,7 +36,7 @@ double smoothMinimum(double a, double b, double blend) {
 OrganDistances Organs::at(Vec3 p) const {
   OrganDistances d{};
   const double shift = heartShift_;
-  d.heart = ellipsoid(p - Vec3{20 + shift, -66, -168}, {50, 38, 50});
+  d.heart = ellipsoid(p - Vec3{20 + shift, -64, -174}, {50, 40, 50});
   // Ascending aorta, arch, descending aorta; pulmonary trunk; superior vena cava.
   d.vessels = capsule(p, {-8, -62, -66}, {-4, -60, -130}, 13);
   d.vessels = std::min(d.vessels, capsule(p, {-8, -60, -64}, {16, -18, -66}, 11.5));
@@ -49,7 +49,7 @@ OrganDistances Organs::at(Vec3 p) const {
   d.airway = std::min(d.airway, capsule(p, {0, -32, -88}, {36, -28, -118}, 5));
 
   // Mediastinum: what surrounds them, a thin septum in front, the spine behind.
-  const double septum = std::abs(p.x - 2) - 4.5;
+  const double septum = std::abs(p.x - 2) - 4.5 - 8 * step(-140, -220, p.z);
   const double spine = std::max(std::hypot(p.x, std::max(0.0, -p.y) * 1.1) - 19.5, -p.y - 40);
   const double hilum = ellipsoid(p - Vec3{0, -38, -80}, {25, 34, 72});
   d.mediastinum = std::min({smoothMinimum(septum, d.heart - 3, 12), spine, d.vessels - 2.5, d.airway - 2.5});

@@ -32,7 +32,7 @@ struct Settings {
   double calcification = 0;      ///< share of the cartilages that is calcified
   int seed = 1;
   double lift = 30;              ///< mm at the deepest point
-  double scanSpacing = 1.5;      ///< mm
+  double scanSpacing = 2;        ///< mm
   double scanNoise = 0.6;        ///< mm along the normal
   double scanMisregistration = 0.5;  ///< mm between sweeps
   double landmarkNoise = 1;      ///< mm for each axis, scan landmarks only

@@ -11,7 +11,7 @@ namespace {
 // The coarse grid of the fit: half the circle, for the surface is symmetric.
 constexpr int kCoarseAngles = 61, kCoarseLevels = 121;
 constexpr double kCoarseAngle = kPi / (kCoarseAngles - 1), kCoarseStep = 5;
-constexpr double kSmoothness = 0.02;  // penalty of a second difference against a sample's weight of 1
+constexpr double kSmoothness = 0.15;  // penalty of a second difference against a sample's weight of 1
 
 int mirrored(int i, int count) { return i < 0 ? -i : i >= count ? 2 * (count - 1) - i : i; }
 

@@ -195,9 +195,9 @@ void drawThinSlice(const Drawing& drawing, double ctZ, Canvas& canvas) {
           const double toMuscle = slice.muscle.distance(a, t, r), toWall = slice.wall.distance(a, t, r);
           const double toInner = slice.inner.distance(a, t, r);
           pixel.cover(toMuscle, kMuscleHu, kMuscle);
-          // A thin layer of fat over the ribs' cage parts the muscles from the intercostals.
-          pixel.cover(std::max(std::abs(toWall - 4.6) - 0.5, toMuscle + 2), kFatHu, kFat);
-          pixel.cover(std::max(toInner - 1.3, -99.0), kFatHu, kFat);
+          // Thin layers of fat part the intercostals from the muscles outside and from the pleura.
+          if (slice.z < 0 && slice.z > -300) pixel.cover(std::max(std::abs(toWall - 4.6) - 0.5, toMuscle + 2), kFatHu, kFat);
+          pixel.cover(toInner - 1.3, kFatHu, kFat);
           const float toVessel = canvas.vessels.distance(index);
           if (toInner < 2) slice.drawInside(pixel, p, toInner, toVessel < 2, toVessel * toBody);
           // Skeleton, in the order of what lies over what; tubes' distances are in CT mm.

@@ -97,14 +97,11 @@ Skeleton buildSkeleton(double depthScale) {
 }
 
 double junctionX(const Skeleton& skeleton, double z) {
-  Vec3 above = skeleton.ribs[1].line.back();
-  if (z >= above.z) return above.x;
-  for (int number = 2; number <= 10; ++number) {
-    const Vec3 below = skeleton.ribs[2 * (number - 1) + 1].line.back();
-    if (z >= below.z) return above.x + (below.x - above.x) * (z - above.z) / (below.z - above.z);
-    above = below;
-  }
-  return above.x;
+  // Newton's parabola through the junctions of ribs 1, 4 and 10: smooth, and within a few mm of the others.
+  const Vec3 a = skeleton.ribs[1].line.back(), b = skeleton.ribs[7].line.back(), c = skeleton.ribs[19].line.back();
+  const double ab = (b.x - a.x) / (b.z - a.z), bc = (c.x - b.x) / (c.z - b.z);
+  const double x = a.x + ab * (z - a.z) + (bc - ab) / (c.z - a.z) * (z - a.z) * (z - b.z);
+  return z > a.z ? a.x : z < c.z ? c.x : x;
 }
 
 }  // namespace pectora::phantom

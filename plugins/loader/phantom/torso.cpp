@@ -32,11 +32,11 @@ PolarTable fitWall(const Skeleton& skeleton, double depthScale) {
   for (double z = -340; z <= 0; z += 5)
     for (double x : {0.0, 10.0}) samples.push_back({{x, kRibBack - 1, z}, 0.5});
   // The neck above and the abdomen below, where there are no ribs.
-  const double front = kRibBack - (105 + kRibBack) * depthScale;
+  const double front = kRibBack - (112 + kRibBack) * depthScale;
   for (double z = 22; z <= PolarTable::kTop; z += 6) addEllipse(samples, z, 52, -44, 38, 0.4);
   for (double z = -350; z >= PolarTable::kBottom; z -= 6) {
     const double waist = step(-330, -400, z), hips = step(-420, -520, z);
-    addEllipse(samples, z, 122 - 4 * waist + 12 * hips, front + 8 * waist, kRibBack + 2, 0.3);
+    addEllipse(samples, z, 124 - 6 * waist + 12 * hips, front + 14 * waist, kRibBack + 2, 0.3);
   }
   return PolarTable::fit(samples);
 }
@@ -61,11 +61,11 @@ double muscleHeight(double x, double angle, double z) {
   const double flank = 5 * step(radians(40), radians(75), front) + 4 * step(-210, -300, z) * step(10, 40, ax);
   // Back: erector spinae beside the spinous processes, scapular muscles above.
   const double behind = step(radians(115), radians(150), front);
-  const double erector = behind * (16 * bell(ax - 30, 28) + 8);
-  const double scapular = 14 * step(-190, -120, z) * step(radians(95), radians(130), front) * step(6, 40, ax);
+  const double erector = behind * (9 * bell(ax - 30, 30) + 12);
+  const double scapular = 8 * step(-200, -120, z) * step(radians(95), radians(130), front) * step(6, 50, ax);
   // Shoulder girdle: the axillary folds rise towards the raised arms, then the body narrows to the neck.
-  const double shoulder = step(-150, -35, z) * step(75, 20, z) * step(radians(20), radians(70), front) *
-                          step(radians(178), radians(125), front) * 46;
+  const double shoulder = step(-170, -40, z) * step(80, 10, z) * step(radians(15), radians(75), front) *
+                          step(radians(178), radians(125), front) * 26;
   const double neck = 14 * step(-40, 20, z);
   return 4.8 + std::max(pectoralis, flank) + erector + scapular + shoulder + neck;
 }
@@ -91,18 +91,23 @@ Torso buildTorso(double depthScale, double bmi) {
   torso.wall = fitWall(torso.skeleton, depthScale);
   const SternumPlan& sternum = torso.skeleton.sternum;
   // Thicknesses are along the normal, tables along the radius.
-  const auto offset = [&](auto&& thickness) {
+  const auto offset = [](const PolarTable& from, auto&& thickness) {
     return PolarTable::of([&](double angle, double z) {
-      const Vec3 p = torso.wall.at(angle, z);
-      return torso.wall.radius(angle, z) + thickness(p.x, angle, z) / torso.wall.normalFactor(angle, z);
+      const Vec3 p = from.at(angle, z);
+      return from.radius(angle, z) + thickness(p.x, angle, z) / from.normalFactor(angle, z);
     });
   };
-  torso.inner = offset([&](double x, double a, double z) { return -innerDepth(sternum, x, a, z); });
-  torso.muscle = offset([&](double x, double a, double z) { return muscleHeight(x, a, z); });
-  torso.skin = offset([&](double x, double a, double z) {
+  torso.inner = offset(torso.wall, [&](double x, double a, double z) { return -innerDepth(sternum, x, a, z); });
+  // Muscles and fat even out what single ribs do to the wall.
+  PolarTable even = torso.wall;
+  even.smooth(50);
+  even = PolarTable::of([&](double a, double z) { return std::max(even.radius(a, z), torso.wall.radius(a, z)); });
+  even.smooth(16);
+  torso.muscle = offset(even, [&](double x, double a, double z) { return muscleHeight(x, a, z); });
+  torso.skin = offset(even, [&](double x, double a, double z) {
     return muscleHeight(x, a, z) + fatThickness(x, a, z, bmi) + kSkinThickness;
   });
-  torso.skin.smooth(8);
+  torso.skin.smooth(24);
   return torso;
 }
 

@@ -138,14 +138,10 @@ std::shared_ptr<const Truth> makeTruth(const Patient& patient, const Settings&, 
   truth->skinBefore = patient.before.tube(body.torso->skin, low, high, kMeshSpacing);
   truth->skinAfter = patient.after.tube(body.torso->skin, low, high, kMeshSpacing);
   truth->pleura = body.tube(body.torso->inner, -320, top, kMeshSpacing);
-  LevelMetrics deepest;
-  for (const LevelMetrics& metrics : anatomy->metrics) {
-    const double z = body.pose.levelToBody(metrics.z);
-    if (z < body.sternalBodyBottom() || z > body.sternalBodyTop()) continue;
-    if (deepest.transverse == 0 || metrics.sternumToVertebra < deepest.sternumToVertebra) deepest = metrics;
+  if (const LevelMetrics* deepest = anatomy->deepestLevel()) {
+    truth->hallerIndex = deepest->haller();
+    truth->correctionIndex = deepest->correctionIndex();
   }
-  truth->hallerIndex = deepest.haller();
-  truth->correctionIndex = deepest.correctionIndex();
   truth->pitDepth = patient.pitDepth;
   truth->anatomy = std::move(anatomy);
   truth->labels = std::move(labels);
