@@ -15,10 +15,11 @@ Curve withHandles(Curve curve, double scale) {
   return curve;
 }
 
-// Scales the handles until the curve has the wanted length, or comes as close as handles of 0 (straight) to 4 times
-// their length allow. Longer handles make a longer curve, so bisection finds it.
+// Scales the handles until the curve has the wanted length, or comes as close as handles between half and one and a half
+// times their length allow: beyond that it would kink. Longer handles make a longer curve, so bisection finds it.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0, high = 4;
+  double low = 0.5, high = 1.5;
+  if (withHandles(curve, low).length() >= length) return withHandles(curve, low);
   if (withHandles(curve, high).length() <= length) return withHandles(curve, high);
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
