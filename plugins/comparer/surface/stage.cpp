@@ -1,0 +1,41 @@
+#include "plugins/comparer/surface/compare.h"
+
+#include "kernel/stage/plugin.h"
+
+namespace {
+using namespace pectora;
+
+class Surface final : public Stage {
+ public:
+  void describe(Visitor& v) override {
+    v.text("name", settings_.name, TextRole::plain, "Name of the comparison in reports, letters, digits and _");
+    v.real("max_distance", settings_.maxDistance, "mm", {0.1, 1000}, {10, 80}, "Points further away than this have no counterpart and are left out");
+    v.real("pit_threshold", settings_.pitThreshold, "mm", {0, 100}, {1, 6}, "The pit region is where the reference differs from unchanged by more than this");
+    v.real("pit_margin", settings_.pitMargin, "mm", {0, 200}, {0, 30}, "What lies within this of it belongs to the pit region, too");
+    v.real("bin_width", settings_.binWidth, "mm", {0.01, 100}, {0.1, 2}, "Width of the histogram's bins");
+  }
+
+  Outputs run(const Inputs& inputs, Host& host) override {
+    if (settings_.name.empty() || settings_.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != std::string::npos)
+      throw Error("the name becomes part of file names").of("name").given(settings_.name).allowed("letters, digits and _");
+    const auto reference = inputs.get<Mesh>("reference");
+    const auto unchanged = inputs.get<Mesh>("unchanged");
+    const auto poll = [&](double fraction) {
+      host.checkCancel();
+      host.progress(fraction, "measuring distances");
+    };
+    return {std::make_shared<Comparison>(
+        compareSurfaces(inputs.handles("sample").front().value, *reference, unchanged.get(), settings_, poll))};
+  }
+
+ private:
+  CompareSettings settings_;
+};
+
+}  // namespace
+
+PECTORA_STAGE(Surface, {.id = "comparer.surface", .version = "1.0",
+                        .summary = "Signed distances from one surface to another, over the overlap and the pit, against nothing changed",
+                        .references = "Baerentzen and Aanaes, IEEE TVCG 2005 (sign); Moreira et al., SPIE 2012 (mean, SD, min, max)",
+                        .inputs = {{"sample", {"Points", "Mesh"}}, {"reference", {"Mesh"}}, {"unchanged", {"Mesh"}, true}},
+                        .outputs = {{"comparison", {"Comparison"}}}})
