@@ -69,6 +69,15 @@ std::vector<std::pair<std::string, std::string>> scriptArguments(const Options& 
   return arguments;
 }
 
+// Runs an installed script after printing the command that does the same.
+void runAndTell(ScriptEngine& engine, const std::string& script, const std::vector<std::pair<std::string, std::string>>& arguments) {
+  std::string line = "$ pectora run " + script;
+  for (const auto& [name, value] : arguments) line += " " + name + "=" + value;
+  writeOut(line + "\n");
+  engine.run(findScript(script), arguments);
+  writeOut("\n");
+}
+
 int command(const CLI::App& app, const Options& options, Console& console) {
   Registry registry(pluginFolders());
   Runner runner(registry, console, cancelFlag);
@@ -88,9 +97,12 @@ int command(const CLI::App& app, const Options& options, Console& console) {
   } else if (app.got_subcommand("run")) {
     engine.run(findScript(options.script), scriptArguments(options));
   } else if (app.got_subcommand("demo")) {
-    Options demo = options;
-    if (demo.out.empty()) demo.out = "demo";
-    engine.run(findScript("demo.lua"), scriptArguments(demo));
+    const std::string out = options.out.empty() ? "demo" : options.out;
+    runAndTell(engine, "phantom.lua", {{"out", out + "/patient"}});
+    runAndTell(engine, "correction.lua", {{"ct", out + "/patient/dicom"},
+                                          {"scan", out + "/patient/truth/scan.txt"},
+                                          {"landmarks", out + "/patient/truth/landmarks.csv"},
+                                          {"out", out + "/result"}});
   } else if (app.got_subcommand("explain")) {
     std::vector<Explanation> explanations;
     runner.explanations = &explanations;

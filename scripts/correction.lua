@@ -1,0 +1,68 @@
+-- The whole way: from the CT before a Nuss operation to the predicted skin, and how far that is from a scan after it.
+local p = parameters{
+  { name = "ct", role = "input", doc = "The CT before the operation: a folder of DICOM files, or a DICOMDIR" },
+  { name = "series", doc = "Which series of the folder, if there are several; default: the largest axial CT" },
+  { name = "scan", role = "input", doc = "A 3-D scan after the operation: FastSCAN text, PLY, STL or OBJ; without it nothing is compared" },
+  { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
+  { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
+  { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
+  { name = "spacing", default = 8, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
+  { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
+  { name = "edge", default = "subpixel", choices = { "subpixel", "paper" }, doc = "Where the skin lies: the steepest grey value, or the paper's first pixel" },
+  { name = "slices", default = 20, range = { 0, 1000 }, doc = "Number of slice pictures with contours" },
+  { name = "out", default = "result", role = "output", doc = "Folder for the results" },
+}
+
+-- Anatomy: bones, skin and pleura from the CT; ribs and cartilages as curves.
+local ct = loader.dicom{ path = p.ct, series = p.series }
+local anatomy = segmenter.thorax(ct, { edge = p.edge })
+local cage = splines.cartilage(anatomy)
+
+-- Model: two layers of points, and the effects that this scene calls for.
+local scene = model.two_layer(cage, {
+  spacing = p.spacing,
+  effects = {
+    effect.stretch{}, effect.shear{}, effect.bend{},   -- within the skin
+    effect.direct{}, effect.cross{},                   -- between skin and pleura
+    effect.attachment{},                               -- of the pleura to the rib cage
+  },
+})
+
+-- Operation: the bar lifts the sternum, the solver finds the skin.
+local plan = planner.nuss(cage, { lift = p.lift })
+local motion = solver[p.solver](scene, plan)
+
+-- What the operation changes, and how far the prediction is from the scan.
+local comparisons = {
+  comparer.surface(motion.after, motion.before, { name = "ct_vs_simulated", unchanged = motion.before }),
+}
+local registration
+if p.scan then
+  local scanned = scan.file{ path = p.scan }
+  local aligned
+  aligned, registration = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
+                                             scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })
+  comparisons[2] = comparer.surface(aligned, motion.after, { name = "scan_vs_simulated", unchanged = motion.before })
+end
+report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion,
+              registration = registration, comparisons = comparisons, slices = p.slices, path = p.out }
+
+-- The table of the paper: signed distances in mm.
+print(string.format("Haller index before %.2f, correction index %.1f %%", anatomy.haller_index or 0/0, anatomy.correction_index or 0/0))
+print(string.format("%-34s %9s %9s %9s %9s %9s %9s", "signed distance, mm", "points", "mean", "SD", "min", "max", "RMS"))
+for _, c in ipairs(comparisons) do
+  for _, region in ipairs{ "overlap", "pit" } do
+    if c[region .. "_points"] > 0 then
+      print(string.format("%-34s %9d %+9.2f %9.2f %+9.2f %+9.2f %9.2f", c.name:gsub("_", " ") .. ", " .. region, c[region .. "_points"] // 1,
+                          c[region .. "_mean"], c[region .. "_sd"], c[region .. "_min"], c[region .. "_max"], c[region .. "_rms"]))
+    end
+  end
+end
+if registration then
+  local c = comparisons[2]
+  print(string.format("landmarks: %s, residual %.2f mm RMS", registration.method, registration.rms))
+  if c.pit_points > 0 then
+    print(string.format("scan against the unchanged CT, pit: RMS %.2f mm; skill of the prediction %.2f", c.unchanged_pit_rms, c.skill))
+  end
+end
+print("Results are in " .. p.out)
