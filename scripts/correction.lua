@@ -34,7 +34,7 @@ local motion = solver[p.solver](scene, plan)
 
 -- What the operation changes, and how far the prediction is from the scan.
 local comparisons = {
-  comparer.surface(motion.after, motion.before, { name = "ct_vs_simulated", unchanged = motion.before }),
+  comparer.surface(motion.before, motion.after, { name = "ct_vs_simulated", unchanged = motion.before }),
 }
 local registration
 if p.scan then
@@ -48,7 +48,7 @@ report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = pla
               registration = registration, comparisons = comparisons, slices = p.slices, path = p.out }
 
 -- The table of the paper: signed distances in mm.
-print(string.format("Haller index before %.2f, correction index %.1f %%", anatomy.haller_index or 0/0, anatomy.correction_index or 0/0))
+print(string.format("Haller index before %.2f, correction index %.1f %%", anatomy.haller_index, anatomy.correction_index))
 print(string.format("%-34s %9s %9s %9s %9s %9s %9s", "signed distance, mm", "points", "mean", "SD", "min", "max", "RMS"))
 for _, c in ipairs(comparisons) do
   for _, region in ipairs{ "overlap", "pit" } do

@@ -6,6 +6,7 @@
 #include "kernel/value/volume.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace pectora {
 
@@ -56,11 +57,12 @@ std::vector<Fact> Anatomy::facts() const {
                                                                        [](const LayerSlice& s) { return s.clipped; })), ""},
                           {"sternum_tilt", sternum.tiltDeg, "deg"},
                           {"sternum_torsion", sternum.torsionDeg, "deg"}};
-  if (const LevelMetrics* level = deepestLevel()) {
-    facts.push_back({"haller_index", level->haller(), ""});
-    facts.push_back({"correction_index", level->correctionIndex(), "%"});
-    facts.push_back({"deepest_level_z", level->z, "mm"});
-  }
+  // Without a level that has all three lengths there is no index.
+  const LevelMetrics* level = deepestLevel();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  facts.push_back({"haller_index", level ? level->haller() : none, ""});
+  facts.push_back({"correction_index", level ? level->correctionIndex() : none, "%"});
+  facts.push_back({"deepest_level_z", level ? level->z : none, "mm"});
   return facts;
 }
 

@@ -1,0 +1,167 @@
+#include "kernel/physics/springs.h"
+#include "kernel/physics/workers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace pectora;
+
+namespace {
+
+// A slightly crooked two-layer grid with anchors on the last nodes.
+System crookedGrid(int rows, int columns, int anchors) {
+  System system;
+  system.rows = rows;
+  system.columns = columns;
+  system.freeNodes = 2 * std::size_t(rows) * columns;
+  system.rest = NodeVectors(system.freeNodes + anchors);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> jitter(-1, 1);
+  for (std::size_t i = 0; i < system.rest.size(); ++i) {
+    const std::size_t point = i % (std::size_t(rows) * columns);
+    const double depth = i < system.freeNodes / 2 ? -20 : i < system.freeNodes ? 0 : 6;
+    system.rest.set(i, {8.0 * double(point % columns) + jitter(random), depth + jitter(random), 8.0 * double(point / columns) + jitter(random)});
+  }
+  system.mass.assign(system.freeNodes, 1e-3);
+  return system;
+}
+
+std::vector<StencilSpring> someStencil() {
+  return {{Layer::outer, Layer::outer, 1, 0, 0.3}, {Layer::outer, Layer::outer, 0, 1, 0.4}, {Layer::outer, Layer::outer, -1, 1, 0.1},
+          {Layer::outer, Layer::outer, 2, 2, 0.05}, {Layer::outer, Layer::inner, 0, 0, 0.2}, {Layer::outer, Layer::inner, -2, 1, 0.07}};
+}
+
+NodeVectors perturbed(const System& system, double amplitude, unsigned seed) {
+  NodeVectors x = system.rest;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> jitter(-amplitude, amplitude);
+  for (std::size_t i = 0; i < x.size(); ++i) x.add(i, {jitter(random), jitter(random), jitter(random)});
+  return x;
+}
+
+// The largest difference between the gradient and central differences of the energy, over all coordinates of some nodes.
+double gradientError(const System& system, const Term& term, NodeVectors x) {
+  NodeVectors gradient(x.size());
+  double largest = 0, error = 0;
+  term.evaluate(x, gradient, largest);
+  const double h = 1e-5;
+  for (std::size_t i = 0; i < system.rest.size(); i += 7) {
+    for (std::vector<double> NodeVectors::*axis : {&NodeVectors::x, &NodeVectors::y, &NodeVectors::z}) {
+      double& coordinate = (x.*axis)[i];
+      const double here = coordinate;
+      coordinate = here + h;
+      const double up = term.energy(x);
+      coordinate = here - h;
+      const double down = term.energy(x);
+      coordinate = here;
+      error = std::max(error, std::abs((up - down) / (2 * h) - (gradient.*axis)[i]));
+    }
+  }
+  return error;
+}
+
+}  // namespace
+
+TEST(LatticeTerm, GradientIsTheDerivativeOfItsEnergy) {
+  const System system = crookedGrid(6, 9, 0);
+  const auto term = makeLatticeTerm("all", system, someStencil());
+  // Rounding of the energy (about 100 N mm) over 2 h leaves 1e-9; forces are of order 1 N.
+  EXPECT_LT(gradientError(system, *term, perturbed(system, 3, 1)), 1e-7);
+}
+
+TEST(SpringTerm, GradientIsTheDerivativeOfItsEnergy) {
+  const System system = crookedGrid(4, 5, 20);
+  std::vector<NodeSpring> springs;
+  for (std::size_t j = 0; j < 20; ++j) springs.push_back({20 + j, 40 + j, 0.5 + 0.1 * double(j)});
+  const auto term = makeSpringTerm("attachment", system, springs);
+  EXPECT_LT(gradientError(system, *term, perturbed(system, 3, 2)), 1e-7);
+}
+
+TEST(LatticeTerm, HasNoEnergyAndNoForceAtRest) {
+  const System system = crookedGrid(6, 9, 0);
+  const auto term = makeLatticeTerm("all", system, someStencil());
+  NodeVectors gradient(system.rest.size());
+  double largest = 0;
+  EXPECT_EQ(term->evaluate(system.rest, gradient, largest), 0);
+  EXPECT_EQ(largest, 0);
+}
+
+TEST(LatticeTerm, EqualsTheSameSpringsGivenOneByOne) {
+  const System system = crookedGrid(5, 6, 0);
+  const auto lattice = makeLatticeTerm("all", system, someStencil());
+  std::vector<NodeSpring> list;
+  for (const StencilSpring& s : someStencil())
+    for (int r = 0; r < 5; ++r)
+      for (int c = 0; c < 6; ++c) {
+        const int row = r + s.rows, column = c + s.columns;
+        if (row < 0 || row >= 5 || column < 0 || column >= 6) continue;
+        list.push_back({std::size_t(r * 6 + c) + (s.from == Layer::inner ? 30 : 0), std::size_t(row * 6 + column) + (s.to == Layer::inner ? 30 : 0), s.stiffnessNPerMm});
+      }
+  const auto springs = makeSpringTerm("list", system, list);
+  const NodeVectors x = perturbed(system, 4, 3);
+  NodeVectors a(x.size()), b(x.size());
+  double largestA = 0, largestB = 0;
+  EXPECT_NEAR(lattice->evaluate(x, a, largestA), springs->evaluate(x, b, largestB), 1e-10);
+  EXPECT_NEAR(largestA, largestB, 1e-12);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT(distance(a[i], b[i]), 1e-11);
+  std::vector<double> boundA(x.size()), boundB(x.size());
+  lattice->addStiffnessBound(boundA);
+  springs->addStiffnessBound(boundB);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(boundA[i], boundB[i], 1e-12);
+}
+
+TEST(LatticeTerm, IsUnchangedByRotationAndTranslation) {
+  const System system = crookedGrid(6, 9, 0);
+  const auto term = makeLatticeTerm("all", system, someStencil());
+  const NodeVectors x = perturbed(system, 3, 4);
+  NodeVectors turned(x.size());
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (std::size_t i = 0; i < x.size(); ++i) turned.set(i, {c * x.x[i] - s * x.y[i] + 100, s * x.x[i] + c * x.y[i] - 50, x.z[i] + 7});
+  EXPECT_NEAR(term->energy(x), term->energy(turned), 1e-9);
+}
+
+TEST(LatticeTerm, GivesTheSameBitsForAnyNumberOfThreads) {
+  const System system = crookedGrid(40, 31, 0);
+  const auto term = makeLatticeTerm("all", system, someStencil());
+  const NodeVectors x = perturbed(system, 3, 5);
+  const int before = threads();
+  NodeVectors one(x.size());
+  double largest = 0;
+  setThreads(1);
+  const double energy = term->evaluate(x, one, largest);
+  for (int count : {2, 8}) {
+    setThreads(count);
+    NodeVectors other(x.size());
+    double otherLargest = 0;
+    EXPECT_EQ(term->evaluate(x, other, otherLargest), energy);
+    EXPECT_EQ(otherLargest, largest);
+    EXPECT_EQ(other.x, one.x);
+    EXPECT_EQ(other.y, one.y);
+    EXPECT_EQ(other.z, one.z);
+  }
+  setThreads(before);
+}
+
+TEST(LatticeTerm, StaysFiniteWhenPointsCoincide) {
+  const System system = crookedGrid(4, 4, 0);
+  const auto term = makeLatticeTerm("all", system, someStencil());
+  NodeVectors x = system.rest;
+  for (std::size_t i = 0; i < x.size(); ++i) x.set(i, {1, 2, 3});
+  NodeVectors gradient(x.size());
+  double largest = 0;
+  EXPECT_TRUE(std::isfinite(term->evaluate(x, gradient, largest)));
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(isFinite(gradient[i]));
+  EXPECT_GT(largest, 0);
+}
+
+TEST(Drive, IsLinearBetweenItsFrames) {
+  Drive drive;
+  drive.frames = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 4, 0}}};
+  NodeVectors x(3);
+  drive.apply(0.75, 2, x);
+  EXPECT_LT(distance(x[2], {1, 2, 0}), 1e-12);
+  drive.apply(1, 2, x);
+  EXPECT_LT(distance(x[2], {1, 4, 0}), 1e-12);
+}

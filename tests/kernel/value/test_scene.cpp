@@ -1,0 +1,51 @@
+#include "kernel/value/motion.h"
+
+#include <gtest/gtest.h>
+
+using namespace pectora;
+
+namespace {
+
+// A flat wall: skin at y = -20, pleura at y = 0, columns to the patient's left, rows to the head.
+void flatWall(int rows, int columns, std::vector<Vec3>& outer, std::vector<Vec3>& inner) {
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) outer.push_back({8.0 * c, -20, 8.0 * r}), inner.push_back({8.0 * c, 0, 8.0 * r});
+}
+
+}  // namespace
+
+TEST(LayerMesh, TrianglesFaceOutOfTheBody) {
+  std::vector<Vec3> outer, inner;
+  flatWall(3, 4, outer, inner);
+  const Mesh mesh = layerMesh(3, 4, outer);
+  EXPECT_EQ(mesh.triangles.size(), 12u);
+  for (const auto& t : mesh.triangles)
+    EXPECT_LT(cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]).y, 0);
+}
+
+TEST(InvertedPrisms, AreNoneAtRest) {
+  std::vector<Vec3> outer, inner;
+  flatWall(5, 6, outer, inner);
+  int first = 0;
+  EXPECT_EQ(countInvertedPrisms(5, 6, outer, inner, first), 0);
+  EXPECT_EQ(first, -1);
+}
+
+TEST(InvertedPrisms, AreFoundWhereSkinIsMirroredThroughThePleura) {
+  // The mirror image has no spring energy at all: only the orientation tells.
+  std::vector<Vec3> outer, inner;
+  flatWall(5, 6, outer, inner);
+  for (Vec3& p : outer) p.y = -p.y;
+  int first = -1;
+  EXPECT_EQ(countInvertedPrisms(5, 6, outer, inner, first), 20);
+  EXPECT_EQ(first, 0);
+}
+
+TEST(InvertedPrisms, AreCountedAroundASinglePointPushedThrough) {
+  std::vector<Vec3> outer, inner;
+  flatWall(5, 6, outer, inner);
+  outer[2 * 6 + 3].y = 5;
+  int first = -1;
+  EXPECT_EQ(countInvertedPrisms(5, 6, outer, inner, first), 4);
+  EXPECT_EQ(first, 1 * 6 + 2);
+}
