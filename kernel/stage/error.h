@@ -22,6 +22,7 @@ class Error : public std::exception {
   Error& given(std::string value);            ///< what was given
   Error& allowed(std::string what);           ///< what would have been right
   Error& at(std::string where);               ///< a file name, or script line
+  Error& inScript(std::string line);          ///< "correction.lua:31"; only the first one given is kept
   Error& advise(std::string advice);          ///< what to do next
 
   ErrorKind kind() const { return kind_; }
@@ -31,7 +32,7 @@ class Error : public std::exception {
  private:
   void compose();
   ErrorKind kind_;
-  std::string message_, stage_, parameter_, given_, allowed_, where_, advice_, text_;
+  std::string message_, stage_, parameter_, given_, allowed_, where_, script_, advice_, text_;
 };
 
 /// Thrown by Host::checkCancel; never an error.

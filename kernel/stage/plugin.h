@@ -24,13 +24,13 @@ struct Descriptor {
   std::string id;                 ///< "stage.name", equal to the file's name without ".so"
   std::string version;
   std::string summary;            ///< one line
-  std::string references;         ///< where the method comes from
-  std::vector<Port> inputs;       ///< stages only
-  std::vector<Port> outputs;      ///< stages only
+  std::string references = {};    ///< where the method comes from
+  std::vector<Port> inputs = {};  ///< stages only
+  std::vector<Port> outputs = {}; ///< stages only
   bool isCacheable = true;        ///< false for stages that write files
-  std::function<std::unique_ptr<Stage>()> makeStage;
-  std::function<std::unique_ptr<Effect>()> makeEffect;
-  std::function<std::unique_ptr<Solver>()> makeSolver;
+  std::function<std::unique_ptr<Stage>()> makeStage = {};
+  std::function<std::unique_ptr<Effect>()> makeEffect = {};
+  std::function<std::unique_ptr<Solver>()> makeSolver = {};
 };
 
 }  // namespace pectora

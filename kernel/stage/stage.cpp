@@ -5,7 +5,7 @@
 
 namespace pectora {
 
-const Handle& Inputs::handle(const char* name) const {
+const std::vector<Handle>& Inputs::handles(const char* name) const {
   for (std::size_t i = 0; i < ports_.size(); ++i)
     if (std::strcmp(ports_[i].name, name) == 0) return handles_[i];
   throw std::logic_error(std::string("the stage has no input \"") + name + "\"");

@@ -15,9 +15,10 @@ namespace pectora {
 
 /// One input or output of a stage.
 struct Port {
-  const char* name;                 ///< "ct"
-  std::vector<const char*> kinds;   ///< accepted kinds, e.g. {"Mesh", "Points"}; for an output exactly one
+  const char* name = "";            ///< "ct"
+  std::vector<const char*> kinds = {};   ///< accepted kinds, e.g. {"Mesh", "Points"}; for an output exactly one
   bool isOptional = false;          ///< inputs only
+  bool isList = false;              ///< inputs only: takes any number of values
 };
 
 /// A value with its provenance.
@@ -29,19 +30,22 @@ struct Handle {
 /// The inputs of one run, already checked against the stage's signature.
 class Inputs {
  public:
-  Inputs(const std::vector<Port>& ports, std::vector<Handle> handles)
+  /// One list of handles for each port, in order; a port that is no list has one handle or none.
+  Inputs(const std::vector<Port>& ports, std::vector<std::vector<Handle>> handles)
       : ports_(ports), handles_(std::move(handles)) {}
-  /// The input of that name; never null for a required one.
+  /// The input of that name; null if it is optional and absent, or holds another kind than T.
   template <class T>
   std::shared_ptr<const T> get(const char* name) const {
-    return std::dynamic_pointer_cast<const T>(handle(name).value);
+    const std::vector<Handle>& found = handles(name);
+    return found.empty() ? nullptr : std::dynamic_pointer_cast<const T>(found.front().value);
   }
-  bool has(const char* name) const { return handle(name).value != nullptr; }
-  const Handle& handle(const char* name) const;
+  bool has(const char* name) const { return !handles(name).empty(); }
+  /// All values of a port, with their records.
+  const std::vector<Handle>& handles(const char* name) const;
 
  private:
   const std::vector<Port>& ports_;
-  std::vector<Handle> handles_;
+  std::vector<std::vector<Handle>> handles_;
 };
 
 using Outputs = std::vector<std::shared_ptr<const Value>>;

@@ -79,4 +79,9 @@ std::vector<Fact> Truth::facts() const {
           {"sternum_torsion", anatomy ? anatomy->sternum.torsionDeg : 0.0, "deg"}};
 }
 
+std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Truth::parts() const {
+  return {{"anatomy", anatomy},          {"labels", labels}, {"skin_before", skinBefore},
+          {"skin_after", skinAfter},     {"pleura", pleura}};
+}
+
 }  // namespace pectora

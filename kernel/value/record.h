@@ -12,11 +12,12 @@ namespace pectora {
 struct Record {
   std::string stage;                                          ///< "segmenter.thorax"
   std::string version;
-  std::vector<std::pair<std::string, std::string>> settings;  ///< every parameter, in canonical text
-  std::vector<std::pair<std::string, std::string>> files;     ///< name (no folder) and hash of each file read
+  /// Every parameter in canonical text. A path that is read appears as the hash of its bytes, a path that is written
+  /// not at all: paths may hold a patient's name.
+  std::vector<std::pair<std::string, std::string>> settings;
   std::vector<std::pair<std::string, std::shared_ptr<const Record>>> inputs;
   std::vector<std::string> warnings;                          ///< what the stage wants its user to know
-  std::string key;                                            ///< cache key: hash of all of the above but warnings
+  std::string key;                                            ///< cache key: hash of the stage, its plugin's file, settings and inputs' keys
   double seconds = 0;                                         ///< wall time of the run that made it
   double peakMegabytes = 0;                                   ///< peak resident memory of the process by then
 };

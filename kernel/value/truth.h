@@ -28,6 +28,7 @@ struct Truth : Value {
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
+  std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };
 
 }  // namespace pectora

@@ -1,7 +1,10 @@
 // What every value that passes between stages has in common.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,6 +25,10 @@ struct Value {
   virtual const char* kind() const = 0;
   /// What a script can read (`ct.slices`) and a summary prints; empty by default.
   virtual std::vector<Fact> facts() const { return {}; }
+  /// Memory that it holds, for the cache's budget; small values may leave it 0.
+  virtual std::size_t bytes() const { return 0; }
+  /// Values inside this one that a script can take out by name (`motion.after`); empty by default.
+  virtual std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const { return {}; }
 };
 
 }  // namespace pectora

@@ -42,6 +42,7 @@ struct Volume : Value {
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
+  std::size_t bytes() const override { return hu.size() * sizeof(hu[0]); }
   std::int16_t at(int i, int j, int k) const { return hu[grid.index(i, j, k)]; }
 };
 
@@ -53,6 +54,7 @@ struct Labels : Value {
   std::vector<std::string> names;
 
   const char* kind() const override { return kName; }
+  std::size_t bytes() const override { return label.size(); }
 };
 
 }  // namespace pectora

@@ -1,0 +1,49 @@
+#include "kernel/physics/system.h"
+
+#include <algorithm>
+
+namespace pectora {
+
+void NodeVectors::clear() {
+  std::fill(x.begin(), x.end(), 0.0);
+  std::fill(y.begin(), y.end(), 0.0);
+  std::fill(z.begin(), z.end(), 0.0);
+}
+
+double System::evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const {
+  gradient.clear();
+  largestForce = 0;
+  double total = 0;
+  for (const auto& term : terms) total += term->evaluate(positions, gradient, largestForce);
+  return total;
+}
+
+double System::energy(const NodeVectors& positions) const {
+  double total = 0;
+  for (const auto& term : terms) total += term->energy(positions);
+  return total;
+}
+
+std::vector<double> System::stiffnessBound() const {
+  std::vector<double> bound(rest.size(), 0.0);
+  for (const auto& term : terms) term->addStiffnessBound(bound);
+  bound.resize(freeNodes);
+  return bound;
+}
+
+std::string System::nodeName(std::size_t node) const {
+  const std::size_t layerPoints = std::size_t(rows) * columns;
+  if (node >= 2 * layerPoints) return "anchor " + std::to_string(node - 2 * layerPoints);
+  const std::size_t point = node % layerPoints;
+  return std::string(node < layerPoints ? "skin" : "pleura") + " point at row " + std::to_string(point / columns) +
+         ", column " + std::to_string(point % columns);
+}
+
+void Drive::apply(double t, std::size_t freeNodes, NodeVectors& positions) const {
+  const double position = std::clamp(t, 0.0, 1.0) * double(frames.size() - 1);
+  const std::size_t frame = std::min(frames.size() - 2, std::size_t(position));
+  for (std::size_t i = 0; i < frames[frame].size(); ++i)
+    positions.set(freeNodes + i, lerp(frames[frame][i], frames[frame + 1][i], position - double(frame)));
+}
+
+}  // namespace pectora

@@ -1,0 +1,63 @@
+// The problem that a scene compiles to: free nodes, driven nodes, and energy terms over them.
+#pragma once
+
+#include "kernel/value/vec3.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pectora {
+
+/// One vector a node, as structure of arrays. Nodes are numbered: outer layer, inner layer, anchors.
+struct NodeVectors {
+  std::vector<double> x, y, z;
+
+  NodeVectors() = default;
+  explicit NodeVectors(std::size_t nodes) : x(nodes), y(nodes), z(nodes) {}
+  std::size_t size() const { return x.size(); }
+  Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(std::size_t i, Vec3 v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+  void add(std::size_t i, Vec3 v) { x[i] += v.x, y[i] += v.y, z[i] += v.z; }
+  void clear();
+};
+
+/// One term of the potential energy, in N mm.
+class Term {
+ public:
+  virtual ~Term() = default;
+  /// The effects that it stands for, for messages: "stretch, shear".
+  virtual std::string name() const = 0;
+  virtual double energy(const NodeVectors& positions) const = 0;
+  /// Returns the energy and adds its gradient (N) to `gradient`. Also raises `largestForce` to the largest force of a
+  /// single spring or element, the scale of the residual. The result does not depend on the number of threads.
+  virtual double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const = 0;
+  /// Adds to each node a bound of its stiffness: the sum over its springs of 2 k, or k where the other end is driven
+  /// (science: Gershgorin bound of the Hessian's rows), N/mm.
+  virtual void addStiffnessBound(std::vector<double>& bound) const = 0;
+};
+
+/// Nodes [0, freeNodes) are unknown, the rest follow the plan.
+struct System {
+  int rows = 0, columns = 0;               ///< of each layer
+  std::size_t freeNodes = 0;
+  NodeVectors rest;                        ///< all nodes, mm
+  std::vector<double> mass;                ///< of the free nodes, kg
+  std::vector<std::unique_ptr<Term>> terms;
+
+  /// Energy of all terms; overwrites `gradient`.
+  double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const;
+  double energy(const NodeVectors& positions) const;
+  std::vector<double> stiffnessBound() const;
+  /// "outer point at row 3, column 17", for messages.
+  std::string nodeName(std::size_t node) const;
+};
+
+/// Where the driven nodes lie after part t of the motion, 0 to 1: linear between equally spaced frames.
+struct Drive {
+  std::vector<std::vector<Vec3>> frames;
+  /// Writes them into the tail of `positions`.
+  void apply(double t, std::size_t freeNodes, NodeVectors& positions) const;
+};
+
+}  // namespace pectora

@@ -1,0 +1,37 @@
+// Runs Lua scripts: a sandboxed state in which every plugin is a function.
+#pragma once
+
+#include "kernel/host/runner.h"
+
+#include <functional>
+#include <memory>
+
+namespace pectora {
+
+/// What a script may do and with what.
+struct ScriptOptions {
+  std::vector<std::string> requireFolders;            ///< where `require` looks, besides the script's own folder
+  std::function<void(const std::string&)> print;      ///< a line that the script prints
+  std::size_t memoryLimit = std::size_t(256) << 20;   ///< bytes of Lua's own memory
+};
+
+/// One Lua state. Base, math, string and table are there, and `require` limited to scripts' folders; io, os, debug,
+/// load and bytecode are not. Each stage is a global table of functions (`loader.dicom{ path = ... }`), values are handles whose facts
+/// and parts can be read (`ct.slices`, `motion.after`). Errors carry the script's line and a traceback.
+class ScriptEngine {
+ public:
+  struct State;
+  ScriptEngine(Runner& runner, Registry& registry, std::atomic<bool>& cancel, ScriptOptions options);
+  ~ScriptEngine();
+
+  /// The parameters that the script declares with parameters{...}; the script runs only up to there.
+  std::vector<Parameter> parametersOf(const std::string& path);
+  /// Runs a script with NAME=VALUE arguments, checked against its declared parameters.
+  /// Throws Error, Cancelled or Explained.
+  void run(const std::string& path, const std::vector<std::pair<std::string, std::string>>& arguments);
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pectora

@@ -1,0 +1,41 @@
+// The interface of a solver plugin: it finds where the free nodes go when the driven ones move.
+#pragma once
+
+#include "kernel/physics/system.h"
+#include "kernel/stage/plugin.h"
+#include "kernel/value/motion.h"
+
+namespace pectora {
+
+/// Positions with the account of how they were found. `positions` are always finite.
+struct Solution {
+  NodeVectors positions;
+  SolveStatus status = SolveStatus::stalled;
+  std::string message;                 ///< what is wrong, and where, if not converged
+  int iterations = 0;
+  int forceEvaluations = 0;
+  double residual = 0;                 ///< largest force on a free node, N
+  double relativeResidual = 0;
+  double energy = 0;                   ///< N mm
+  std::vector<double> energyHistory;   ///< N mm
+};
+
+/// A prepared system. solve can be called again and again.
+class Session {
+ public:
+  virtual ~Session() = default;
+  /// Solves for the whole motion of `drive`. `start` (all nodes) is where to begin; null: at rest.
+  /// Throws Cancelled when the host says so.
+  virtual Solution solve(const Drive& drive, const NodeVectors* start, Host& host) = 0;
+};
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual void describe(Visitor& visitor) = 0;
+  /// Checks the settings against the system and prepares it. The system outlives the session.
+  /// Throws Error if a setting cannot work for this system.
+  virtual std::unique_ptr<Session> prepare(const System& system, Host& host) = 0;
+};
+
+}  // namespace pectora

@@ -1,0 +1,42 @@
+// What a solver returns: where the layers went, and whether that can be trusted.
+#pragma once
+
+#include "kernel/value/scene.h"
+
+namespace pectora {
+
+enum class SolveStatus {
+  converged,   ///< the residual is below the tolerance
+  stalled,     ///< it stopped getting smaller
+  diverged,    ///< it grew, or turned into something that is not a number
+  cancelled,
+};
+const char* statusName(SolveStatus status);
+
+struct Motion : Value {
+  static constexpr const char* kName = "Motion";
+  std::shared_ptr<const Scene> scene;
+  std::vector<Vec3> outer, inner;           ///< positions after, as in Scene
+  SolveStatus status = SolveStatus::stalled;
+  std::string message;                      ///< what is wrong, and where, if not converged
+  int iterations = 0;
+  int forceEvaluations = 0;
+  double residual = 0;                      ///< largest force on a free point, N
+  double relativeResidual = 0;              ///< the same over the largest spring force
+  double energy = 0;                        ///< N mm
+  std::vector<double> energyHistory;        ///< N mm, at equal distances of iterations
+  int invertedPrisms = 0;                   ///< cells between the layers that turned inside out
+  int invertedAt = -1;                      ///< index of the first such point
+  double seconds = 0;                       ///< solving alone; not a part of what is compared
+
+  const char* kind() const override { return kName; }
+  std::vector<Fact> facts() const override;
+  /// `before` and `after`: the skin as meshes; `after` has the field "displacement".
+  std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
+};
+
+/// Counts the prisms between the layers whose signed volume is not positive; `first` gets the index of the first.
+int countInvertedPrisms(int rows, int columns, const std::vector<Vec3>& outer, const std::vector<Vec3>& inner,
+                        int& first);
+
+}  // namespace pectora

@@ -1,0 +1,59 @@
+// What the operation does to the rib cage: how the sternum moves, where the bar lies.
+#pragma once
+
+#include "kernel/value/scene.h"
+
+namespace pectora {
+
+/// A rigid motion: rotation by `angle` radians about the axis through `pivot`, then a translation.
+struct RigidMotion {
+  Vec3 pivot;
+  Vec3 axis{1, 0, 0};   ///< unit
+  double angle = 0;     ///< rad, right-handed
+  Vec3 translation;
+
+  Vec3 operator()(Vec3 p) const { return pivot + rotate(p - pivot) + translation; }
+  /// Rotates a direction (Rodrigues).
+  Vec3 rotate(Vec3 d) const;
+};
+
+/// A cartilage after the sternum has moved.
+struct MovedCartilage {
+  Curve curve;
+  double strain = 0;   ///< (new arc length - old) / old
+};
+
+/// Carries every cartilage along with the sternum. The costochondral end stays with its tangent, the medial end moves
+/// with the sternum (rigidly) or with the cartilage that it joins, and both end handles are scaled by bisection until the arc
+/// length is the old one; what cannot be kept is reported as strain.
+/// Returns one entry for each of cage.cartilages, in order.
+std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion& sternum);
+
+/// The bar: a curve across the chest behind the sternum, and its rectangular section.
+struct Bar {
+  std::vector<Vec3> centerline;   ///< from right to left, mm
+  double width = 12.7;            ///< along the body axis, mm
+  double height = 3.5;            ///< thickness, mm
+};
+
+struct Plan : Value {
+  static constexpr const char* kName = "Plan";
+  std::shared_ptr<const RibCage> cage;
+  Vec3 deepest;                    ///< deepest point of the front of the sternum before
+  double lift = 0;                 ///< forward displacement of that point, mm
+  RigidMotion motion;              ///< of the sternum, complete
+  int intercostalSpace = 0;        ///< the bar lies below this rib; 0 if the ribs there were not found
+  Bar bar;
+  /// The cartilages at equal steps of the motion, from rest (first) to complete (last).
+  std::vector<std::vector<MovedCartilage>> frames;
+
+  const char* kind() const override { return kName; }
+  std::vector<Fact> facts() const override;
+  std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
+  /// Part t (0 to 1) of the sternum's motion: the angle and translation are scaled.
+  RigidMotion partial(double t) const;
+  /// Where an anchor lies after part t of the motion.
+  Vec3 moved(const Anchor& anchor, double t) const;
+};
+
+}  // namespace pectora

@@ -1,0 +1,94 @@
+#include "kernel/value/scene.h"
+
+#include "kernel/value/motion.h"
+
+#include <algorithm>
+
+namespace pectora {
+
+Mesh layerMesh(int rows, int columns, std::vector<Vec3> points) {
+  // Rows run up, columns from right to left: (row, column) x (row, column + 1) points to the front.
+  Mesh mesh;
+  mesh.points = std::move(points);
+  mesh.triangles.reserve(std::size_t(2) * std::max(0, rows - 1) * std::max(0, columns - 1));
+  for (int r = 0; r + 1 < rows; ++r) {
+    for (int c = 0; c + 1 < columns; ++c) {
+      const int a = r * columns + c, b = a + 1, up = a + columns, upB = up + 1;
+      mesh.triangles.push_back({a, b, upB});
+      mesh.triangles.push_back({a, upB, up});
+    }
+  }
+  return mesh;
+}
+
+std::vector<Fact> Scene::facts() const {
+  return {{"rows", double(rows), ""},
+          {"columns", double(columns), ""},
+          {"skin_points", double(points()), ""},
+          {"row_spacing", rowSpacing, "mm"},
+          {"column_spacing", columnSpacing, "mm"},
+          {"thickness", thickness, "mm"},
+          {"anchors", double(anchors.size()), ""},
+          {"effects", double(effects.size()), ""}};
+}
+
+std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Scene::parts() const {
+  return {{"cage", cage},
+          {"skin", std::make_shared<Mesh>(layerMesh(rows, columns, outer))},
+          {"pleura", std::make_shared<Mesh>(layerMesh(rows, columns, inner))}};
+}
+
+const char* statusName(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged: return "converged";
+    case SolveStatus::stalled: return "stalled";
+    case SolveStatus::diverged: return "diverged";
+    case SolveStatus::cancelled: return "cancelled";
+  }
+  return "unknown";
+}
+
+std::vector<Fact> Motion::facts() const {
+  double greatest = 0;
+  for (std::size_t i = 0; i < outer.size(); ++i) greatest = std::max(greatest, distance(outer[i], scene->outer[i]));
+  return {{"status", statusName(status), ""},
+          {"message", message, ""},
+          {"iterations", double(iterations), ""},
+          {"force_evaluations", double(forceEvaluations), ""},
+          {"residual", residual, "N"},
+          {"relative_residual", relativeResidual, ""},
+          {"energy", energy, "N mm"},
+          {"inverted_prisms", double(invertedPrisms), ""},
+          {"greatest_skin_displacement", greatest, "mm"}};
+}
+
+std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Motion::parts() const {
+  auto before = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, scene->outer));
+  auto after = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, outer));
+  PointField displacement{"displacement", "mm", {}};
+  for (std::size_t i = 0; i < outer.size(); ++i) displacement.values.push_back(distance(outer[i], scene->outer[i]));
+  after->fields.push_back(std::move(displacement));
+  return {{"scene", scene}, {"before", before}, {"after", after}};
+}
+
+int countInvertedPrisms(int rows, int columns, const std::vector<Vec3>& outer, const std::vector<Vec3>& inner,
+                        int& first) {
+  // Each cell of the grid is a hexahedron; the triple product at each of its outer corners must keep its sign.
+  int inverted = 0;
+  first = -1;
+  for (int r = 0; r + 1 < rows; ++r) {
+    for (int c = 0; c + 1 < columns; ++c) {
+      const int a = r * columns + c, b = a + 1, d = a + columns, e = d + 1;
+      const auto corner = [&](int o, int along, int up) {
+        return dot(cross(outer[along] - outer[o], outer[up] - outer[o]), outer[o] - inner[o]) > 0;
+      };
+      const bool good = corner(a, b, d) && corner(b, e, a) && corner(e, d, b) && corner(d, a, e);
+      if (good) continue;
+      ++inverted;
+      if (first < 0) first = a;
+    }
+  }
+  return inverted;
+}
+
+}  // namespace pectora

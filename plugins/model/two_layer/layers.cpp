@@ -1,0 +1,96 @@
+#include "plugins/model/two_layer/layers.h"
+
+#include "kernel/stage/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora {
+namespace {
+
+// Lowest and highest z of ribs and sternum, with a margin.
+std::pair<double, double> cageExtent(const RibCage& cage, double margin) {
+  double low = INFINITY, high = -INFINITY;
+  for (const RibCurve& rib : cage.ribs)
+    for (const Vec3& p : rib.curve.sample(20)) low = std::min(low, p.z), high = std::max(high, p.z);
+  for (const Cartilage& c : cage.cartilages)
+    for (const Vec3& p : c.curve.sample(20)) low = std::min(low, p.z);
+  // Above the sternum there are shoulders and neck, which the operation does not move.
+  if (!cage.anatomy->sternum.contours.empty()) high = std::min(high, cage.anatomy->sternum.jugularNotch.z);
+  return {low - margin, high + margin};
+}
+
+// A level between two slices of a layer, point by point at equal arc length.
+std::vector<Vec3> levelAt(const std::vector<LayerSlice>& layer, double z, int columns) {
+  std::size_t above = 1;
+  while (above + 1 < layer.size() && layer[above].z < z) ++above;
+  const LayerSlice &a = layer[above - 1], &b = layer[above];
+  const double t = std::clamp((z - a.z) / (b.z - a.z), 0.0, 1.0);
+  const std::vector<Vec3> low = resamplePolyline(a.points, columns), high = resamplePolyline(b.points, columns);
+  std::vector<Vec3> level(columns);
+  for (int c = 0; c < columns; ++c) level[c] = lerp(low[c], high[c], t);
+  return level;
+}
+
+}  // namespace
+
+void buildLayers(const LayerSettings& settings, Scene& scene) {
+  const Anatomy& anatomy = *scene.cage->anatomy;
+  const auto [low, high] = cageExtent(*scene.cage, settings.margin);
+
+  // The longest run of levels with both layers whole.
+  std::size_t bestBegin = 0, bestEnd = 0;
+  for (std::size_t begin = 0; begin < anatomy.skin.size();) {
+    std::size_t end = begin;
+    while (end < anatomy.skin.size() && !anatomy.skin[end].clipped && anatomy.skin[end].points.size() >= 2 &&
+           end < anatomy.pleura.size() && anatomy.pleura[end].points.size() >= 2 && anatomy.skin[end].z >= low &&
+           anatomy.skin[end].z <= high)
+      ++end;
+    if (end - begin > bestEnd - bestBegin) bestBegin = begin, bestEnd = end;
+    begin = std::max(end, begin + 1);
+  }
+  const double extent = bestEnd > bestBegin ? anatomy.skin[bestEnd - 1].z - anatomy.skin[bestBegin].z : 0;
+  if (extent < 4 * settings.spacing)
+    throw Error("too little of the chest wall has both skin and pleura in view to build a model")
+        .given(fmt::format("{:.0f} mm", extent)).allowed(fmt::format("{:.0f} mm or more", 4 * settings.spacing))
+        .advise("Use a CT whose field of view holds the whole skin");
+  const std::vector<LayerSlice> skin(anatomy.skin.begin() + bestBegin, anatomy.skin.begin() + bestEnd);
+  const std::vector<LayerSlice> pleura(anatomy.pleura.begin() + bestBegin, anatomy.pleura.begin() + bestEnd);
+
+  // Rows and columns at about the wanted spacing.
+  double longest = 0;
+  for (const LayerSlice& slice : skin) longest = std::max(longest, polylineLength(slice.points));
+  scene.rows = std::max(5, int(std::lround(extent / settings.spacing)) + 1);
+  scene.columns = std::max(5, int(std::lround(longest / settings.spacing)) + 1);
+  for (int r = 0; r < scene.rows; ++r) {
+    const double z = skin.front().z + extent * r / (scene.rows - 1);
+    const std::vector<Vec3> outer = levelAt(skin, z, scene.columns), inner = levelAt(pleura, z, scene.columns);
+    scene.outer.insert(scene.outer.end(), outer.begin(), outer.end());
+    scene.inner.insert(scene.inner.end(), inner.begin(), inner.end());
+  }
+
+  // Means over the grid, which the spring constants follow from.
+  double rowSum = 0, columnSum = 0, thicknessSum = 0;
+  for (int r = 0; r < scene.rows; ++r) {
+    for (int c = 0; c < scene.columns; ++c) {
+      const int i = scene.index(r, c);
+      thicknessSum += distance(scene.outer[i], scene.inner[i]);
+      if (r > 0) rowSum += distance(scene.outer[i], scene.outer[i - scene.columns]);
+      if (c > 0) columnSum += distance(scene.outer[i], scene.outer[i - 1]);
+    }
+  }
+  scene.rowSpacing = rowSum / ((scene.rows - 1) * scene.columns);
+  scene.columnSpacing = columnSum / (scene.rows * (scene.columns - 1));
+  scene.thickness = thicknessSum / scene.points();
+
+  // Each layer carries half of the wall: density * cell * thickness / 2, mm^3 to m^3.
+  for (int i = 0; i < scene.points(); ++i) {
+    const double volume = scene.rowSpacing * scene.columnSpacing * distance(scene.outer[i], scene.inner[i]);
+    scene.outerMass.push_back(0.5e-9 * settings.density * volume);
+    scene.innerMass.push_back(0.5e-9 * settings.density * volume);
+  }
+}
+
+}  // namespace pectora

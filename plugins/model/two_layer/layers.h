@@ -1,0 +1,19 @@
+// The grids of skin and pleura points.
+#pragma once
+
+#include "kernel/value/scene.h"
+
+namespace pectora {
+
+struct LayerSettings {
+  double spacing = 8;        ///< wanted distance between neighbours on the skin, mm, along rows and columns
+  double margin = 20;        ///< how far the model reaches above and below the ribs and sternum, mm
+  double density = 1060;     ///< of the wall, kg/m^3
+};
+
+/// Fills rows, columns, outer, inner, masses and spacings of `scene` from the layers of scene.cage->anatomy: rows at equal
+/// levels within the longest run of unclipped skin, points at equal arc length on each.
+/// Throws Error if the anatomy has too little of the layers.
+void buildLayers(const LayerSettings& settings, Scene& scene);
+
+}  // namespace pectora

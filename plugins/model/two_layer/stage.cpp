@@ -1,0 +1,43 @@
+#include "plugins/model/two_layer/anchors.h"
+#include "plugins/model/two_layer/layers.h"
+
+#include "kernel/stage/plugin.h"
+
+#include <fmt/format.h>
+
+namespace {
+using namespace pectora;
+
+class TwoLayer final : public Stage {
+ public:
+  void describe(Visitor& v) override {
+    v.real("spacing", settings_.spacing, "mm", {1, 50}, {4, 12}, "Distance between neighbouring skin points");
+    v.real("margin", settings_.margin, "mm", {0, 200}, {0, 60}, "How far the model reaches above the sternum and below the ribs");
+    v.real("density", settings_.density, "kg/m3", {1, 20000}, {900, 1100}, "Density of the chest wall");
+  }
+
+  Outputs run(const Inputs& inputs, Host& host) override {
+    auto scene = std::make_shared<Scene>();
+    scene->cage = inputs.get<RibCage>("cage");
+    for (const Handle& effect : inputs.handles("effects"))
+      scene->effects.push_back(std::dynamic_pointer_cast<const EffectCall>(effect.value));
+    buildLayers(settings_, *scene);
+    host.checkCancel();
+    host.progress(0.5, "attaching the pleura");
+    scene->anchors = findAnchors(*scene);
+    host.info(fmt::format("{} rows x {} columns, {:.1f} x {:.1f} mm apart, wall {:.1f} mm", scene->rows, scene->columns,
+                          scene->rowSpacing, scene->columnSpacing, scene->thickness));
+    return {scene};
+  }
+
+ private:
+  LayerSettings settings_;
+};
+
+}  // namespace
+
+PECTORA_STAGE(TwoLayer, {.id = "model.two_layer", .version = "1.0",
+                         .summary = "The chest wall as two layers of points, skin and pleura, hung on the rib cage",
+                         .references = "Moreira et al., SPIE 2012",
+                         .inputs = {{.name = "cage", .kinds = {"RibCage"}}, {.name = "effects", .kinds = {"Effect"}, .isList = true}},
+                         .outputs = {{"scene", {"Scene"}}}})

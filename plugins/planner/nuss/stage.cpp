@@ -1,0 +1,90 @@
+#include "plugins/planner/nuss/bar.h"
+#include "plugins/planner/nuss/motion.h"
+
+#include "kernel/stage/plugin.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace {
+using namespace pectora;
+
+constexpr int kFrames = 11;
+constexpr double kStrainWarning = 0.05;
+
+class Nuss final : public Stage {
+ public:
+  void describe(Visitor& v) override {
+    v.real("lift", lift_, "mm", {0, 120}, {0, 60}, "How far the deepest point of the sternum comes forward");
+    v.real("correction", correction_, "", {0, 1.5}, {0, 1}, "Lift as a part of the pit's depth (1: level with the most forward inner wall); 0: as lift says");
+    v.real("level", level_, "mm", {-150, 150}, {-40, 40}, "Height of the bar above (+) or below (-) the deepest point of the sternum");
+    v.choice("pivot", pivot_, {"sternoclavicular", "manubrium"}, "Axis that the sternum turns about: above the sternum, as measured elevations say, or the manubrial joint of the paper");
+    v.real("pivot_distance", pivotDistance_, "mm", {40, 1000}, {100, 250}, "How far the sternoclavicular axis lies above the deepest point");
+    v.real("bar_width", bar_.width, "mm", {1, 40}, {10, 16}, "Width of the bar, along the body's axis");
+    v.real("bar_height", bar_.height, "mm", {0.5, 20}, {2, 5}, "Thickness of the bar");
+    v.real("bar_flat", bar_.flat, "mm", {0, 120}, {20, 40}, "Length of the bar's straight part behind the sternum");
+  }
+
+  Outputs run(const Inputs& inputs, Host& host) override {
+    auto plan = std::make_shared<Plan>();
+    plan->cage = inputs.get<RibCage>("cage");
+    const Anatomy& anatomy = *plan->cage->anatomy;
+    const Sternum& sternum = anatomy.sternum;
+    if (sternum.contours.empty())
+      throw Error("no sternum was found, so nothing can be lifted").advise("Use a CT that holds the body of the sternum");
+    plan->deepest = pointAtLevel(sternum);
+
+    // The lift, in mm or as a part of the pit.
+    double lift = lift_;
+    if (correction_ > 0) {
+      const LevelMetrics* level = anatomy.deepestLevel();
+      if (!level) throw Error("the pit's depth is not known, so no part of it can be lifted").of("correction").advise("Give lift in mm");
+      lift = correction_ * std::max(0.0, level->deepestInnerWall - level->sternumToVertebra);
+    }
+    plan->lift = lift;
+    plan->motion = liftRotation(sternum, plan->deepest, lift, pivot_ == "manubrium" ? Pivot::manubrium : Pivot::sternoclavicular, pivotDistance_);
+    plan->frames = motionFrames(*plan->cage, plan->motion, kFrames);
+    plan->intercostalSpace = intercostalSpace(*plan->cage, plan->deepest.z);
+    plan->bar = shapeBar(*plan->cage, plan->deepest, plan->motion, bar_);
+
+    for (std::size_t i = 0; i < plan->cage->cartilages.size(); ++i) {
+      const Cartilage& c = plan->cage->cartilages[i];
+      const double strain = plan->frames.back()[i].strain;
+      if (std::abs(strain) > kStrainWarning)
+        host.warn(fmt::format("the cartilage of the {} rib {} would be strained by {:.1f} %", sideName(c.side), c.rib, 100 * strain));
+    }
+    return {plan};
+  }
+
+ private:
+  // The deepest point of the sternum's front, or the most forward contour point at the wanted level.
+  Vec3 pointAtLevel(const Sternum& sternum) const {
+    if (level_ == 0) return sternum.deepest;
+    const double z = sternum.deepest.z + level_;
+    Vec3 best;
+    double nearest = INFINITY;
+    for (const auto& contour : sternum.contours) {
+      if (contour.empty() || std::abs(contour.front().z - z) >= nearest) continue;
+      nearest = std::abs(contour.front().z - z);
+      best = contour.front();
+      for (const Vec3& p : contour)
+        if (p.y < best.y) best = p;
+    }
+    if (nearest > 10)
+      throw Error("the sternum does not reach to that level").of("level").given(fmt::format("{:g} mm", level_)).advise("Bring the bar closer to the deepest point");
+    return best;
+  }
+
+  double lift_ = 30, correction_ = 0, level_ = 0, pivotDistance_ = 160;
+  std::string pivot_ = "sternoclavicular";
+  BarSettings bar_;
+};
+
+}  // namespace
+
+PECTORA_STAGE(Nuss, {.id = "planner.nuss", .version = "1.0",
+                     .summary = "The Nuss operation: a bar below the deepest point lifts the sternum, cartilages follow",
+                     .references = "Nuss 1998; Moreira et al., SPIE 2012; measured elevations PMID 33742267",
+                     .inputs = {{"cage", {"RibCage"}}},
+                     .outputs = {{"plan", {"Plan"}}}})

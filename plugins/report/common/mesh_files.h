@@ -1,0 +1,25 @@
+// Meshes and points as PLY and VTP. Coordinates are LPS mm.
+#pragma once
+
+#include "kernel/value/mesh.h"
+
+#include <string>
+
+namespace pectora {
+
+/// A comment for the header of every file: what made it.
+struct FileNote {
+  std::string recordKey;   ///< of the value's provenance
+};
+
+/// Binary little-endian PLY; fields become float properties of the vertices.
+std::string plyBytes(const Mesh& mesh, const FileNote& note);
+std::string plyBytes(const Points& points, const FileNote& note);
+/// VTK XML PolyData with raw appended arrays; fields become point data.
+std::string vtpBytes(const Mesh& mesh, const FileNote& note);
+std::string vtpBytes(const Points& points, const FileNote& note);
+
+/// A tube of rectangular section along a line, such as the bar: `width` along z, `height` across.
+Mesh barMesh(const std::vector<Vec3>& centerline, double width, double height);
+
+}  // namespace pectora

@@ -1,0 +1,162 @@
+#include "plugins/report/files/cage_picture.h"
+#include "plugins/report/files/slice_picture.h"
+#include "plugins/report/files/surface_picture.h"
+
+#include "plugins/report/common/atomic_file.h"
+#include "plugins/report/common/mesh_files.h"
+#include "plugins/report/common/record_json.h"
+
+#include "kernel/stage/plugin.h"
+#include "kernel/value/comparison.h"
+#include "kernel/value/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace {
+using namespace pectora;
+
+class Files final : public Stage {
+ public:
+  void describe(Visitor& v) override {
+    v.text("path", path_, TextRole::outputPath, "Folder to write into; made if it does not exist");
+    v.integer("slices", slices_, "", {0, 10000}, {0, 60}, "Number of slice pictures with contours, spread over the CT");
+    v.real("color_limit", colorLimit_, "mm", {0, 500}, {0, 30}, "End of the distance maps' colour bar; 0: a round figure that holds 98 % of the points");
+  }
+
+  Outputs run(const Inputs& inputs, Host& host) override {
+    if (path_.empty()) throw Error("a folder to write into is needed").of("path");
+    makeFolder(path_);
+    auto report = std::make_shared<Report>();
+    report->folder = path_;
+    report_ = report.get();
+
+    // Everything that was handed in, once, for facts and provenance.
+    std::vector<Handle> all;
+    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion", "registration", "comparisons"})
+      all.insert(all.end(), inputs.handles(port).begin(), inputs.handles(port).end());
+    writePictures(inputs, host);
+    writeMeshes(inputs);
+    writeComparisons(inputs);
+    writeSummary(inputs, all);
+    return {report};
+  }
+
+ private:
+  std::string file(const std::string& name) {
+    report_->files.push_back(name);
+    return path_ + "/" + name;
+  }
+  static FileNote note(const Inputs& inputs, const char* port) { return {inputs.handles(port).front().record->key}; }
+
+  void writePictures(const Inputs& inputs, Host& host) {
+    const auto ct = inputs.get<Volume>("ct");
+    const auto anatomy = inputs.get<Anatomy>("anatomy");
+    if (ct && anatomy && slices_ > 0) {
+      makeFolder(path_ + "/slices");
+      const int total = ct->grid.size[2], count = std::min(slices_, total);
+      for (int i = 0; i < count; ++i) {
+        host.checkCancel();
+        host.progress(double(i) / count, "drawing slices");
+        const int slice = count > 1 ? int(std::int64_t(i) * (total - 1) / (count - 1)) : total / 2;
+        slicePicture(*ct, *anatomy, slice).write(file(fmt::format("slices/slice_{:04}.png", slice)));
+      }
+    }
+    const auto plan = inputs.get<Plan>("plan");
+    const auto cage = plan ? plan->cage : inputs.get<RibCage>("cage");
+    if (cage) cagePicture(*cage, plan.get()).write(file("rib_cage.png"));
+  }
+
+  void writeMeshes(const Inputs& inputs) {
+    if (const auto motion = inputs.get<Motion>("motion")) {
+      const Scene& scene = *motion->scene;
+      const Mesh before = layerMesh(scene.rows, scene.columns, scene.outer);
+      Mesh after = layerMesh(scene.rows, scene.columns, motion->outer);
+      PointField displacement{"displacement", "mm", {}};
+      for (std::size_t i = 0; i < motion->outer.size(); ++i) displacement.values.push_back(distance(motion->outer[i], scene.outer[i]));
+      after.fields.push_back(displacement);
+      writeFile(file("before.ply"), plyBytes(before, note(inputs, "motion")));
+      writeFile(file("after.ply"), plyBytes(after, note(inputs, "motion")));
+      writeFile(file("scene.vtp"), vtpBytes(after, note(inputs, "motion")));
+      surfacePicture(before, "", 0, "Before", {}).write(file("before.png"));
+      surfacePicture(after, "", 0, "Predicted", {}).write(file("after.png"));
+    }
+    if (const auto plan = inputs.get<Plan>("plan"))
+      writeFile(file("bar.ply"), plyBytes(barMesh(plan->bar.centerline, plan->bar.width, plan->bar.height), note(inputs, "plan")));
+  }
+
+  void writeComparisons(const Inputs& inputs) {
+    for (const Handle& handle : inputs.handles("comparisons")) {
+      const auto& comparison = dynamic_cast<const Comparison&>(*handle.value);
+      const FileNote note{handle.record->key};
+      std::vector<double> distances;
+      if (const auto* mesh = dynamic_cast<const Mesh*>(comparison.sample.get())) {
+        writeFile(file(comparison.name + ".vtp"), vtpBytes(*mesh, note));
+        distances = fieldValues(mesh->fields);
+      } else if (const auto* points = dynamic_cast<const Points*>(comparison.sample.get())) {
+        writeFile(file(comparison.name + ".vtp"), vtpBytes(*points, note));
+        distances = fieldValues(points->fields);
+      }
+      const double limit = colorLimit_ > 0 ? colorLimit_ : roundLimit(distances);
+      std::string title = comparison.name;
+      std::replace(title.begin(), title.end(), '_', ' ');
+      surfacePicture(*comparison.sample, "distance", limit, "Signed distance: " + title, {caption("whole overlap", comparison.overlap), caption("pit region", comparison.pit)})
+          .write(file(comparison.name + ".png"));
+      std::string csv = "low_mm,high_mm,points\n";
+      for (std::size_t i = 0; i < comparison.histogram.counts.size(); ++i) {
+        const double low = comparison.histogram.low + double(i) * comparison.histogram.binWidth;
+        csv += fmt::format("{:g},{:g},{}\n", low, low + comparison.histogram.binWidth, comparison.histogram.counts[i]);
+      }
+      writeFile(file(comparison.name + "_histogram.csv"), csv);
+    }
+  }
+
+  static std::vector<double> fieldValues(const std::vector<PointField>& fields) {
+    for (const PointField& f : fields)
+      if (f.name == "distance") return f.values;
+    return {};
+  }
+
+  static std::string caption(const std::string& region, const DistanceStatistics& s) {
+    if (s.count == 0) return region + ": no points";
+    return fmt::format("{}: {} points, mean {:+.2f}, SD {:.2f}, RMS {:.2f}, min {:+.2f}, max {:+.2f} mm (signed)", region, s.count, s.mean, s.sd, s.rms, s.min, s.max);
+  }
+
+  void writeSummary(const Inputs& inputs, const std::vector<Handle>& all) {
+    Json json;
+    json["about"] = "Pectora: research software, not a medical device";
+    json["coordinates"] = "DICOM patient coordinates (LPS), mm";
+    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion", "registration"})
+      if (inputs.has(port)) json[port] = factsJson(*inputs.handles(port).front().value);
+    if (const auto scene = inputs.get<Scene>("scene")) {
+      Json effects = Json::array();
+      for (const auto& call : scene->effects) effects.push_back(call->id);
+      json["effects"] = std::move(effects);
+    }
+    Json comparisons = Json::object();
+    for (const Handle& handle : inputs.handles("comparisons"))
+      comparisons[dynamic_cast<const Comparison&>(*handle.value).name] = factsJson(*handle.value);
+    json["comparisons"] = std::move(comparisons);
+    json["files"] = report_->files;
+    json["provenance"] = provenanceJson(all);
+    json["timing"] = timingJson(all);
+    writeFile(file("summary.json"), json.dump(2) + "\n");
+  }
+
+  std::string path_;
+  int slices_ = 20;
+  double colorLimit_ = 0;
+  Report* report_ = nullptr;
+};
+
+}  // namespace
+
+PECTORA_STAGE(Files, {.id = "report.files", .version = "1.0",
+                      .summary = "Writes the summary, meshes, histograms and pictures of a run into a folder",
+                      .inputs = {{"ct", {"Volume"}, true}, {"anatomy", {"Anatomy"}, true}, {"cage", {"RibCage"}, true},
+                                 {"scene", {"Scene"}, true}, {"plan", {"Plan"}, true}, {"motion", {"Motion"}, true},
+                                 {"registration", {"Registration"}, true},
+                                 {.name = "comparisons", .kinds = {"Comparison"}, .isList = true}},
+                      .outputs = {{"report", {"Report"}}},
+                      .isCacheable = false})
