@@ -14,7 +14,7 @@ struct PitShape {
   PitType type = PitType::cup;
   double depth = 0;       ///< d_p, displacement of the bone at the deepest point
   double eccentricity = 0;  ///< x of the deepest point relative to the midline; negative: to the right
-  double asymmetry = 0;   ///< (right half width - left) / (right + left), -0.8 to 0.8
+  double asymmetry = 0;   ///< (right half width - left) / (right + left), -0.7 to 0.7
   double torsionDeg = 0;  ///< rotation of the sternum's section about its axis; positive: left side deeper
   double lift = 0;        ///< elevation of the deepest point by the operation
 };

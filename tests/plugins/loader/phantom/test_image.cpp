@@ -129,7 +129,7 @@ TEST(PhantomImage, labelsGiveTheTruthsHallerIndexToAVoxel) {
   settings.coverage = "thorax";
   const Patient patient = makePatient(settings);
   const Images images = rasterise(patient, settings, [](double) {});
-  const auto truth = makeTruth(patient, settings, images.labels);
+  const auto truth = makeTruth(patient, images.labels);
   const Grid& grid = images.ct->grid;
   const LevelMetrics* deepest = truth->anatomy->deepestLevel();
   ASSERT_NE(deepest, nullptr);
@@ -147,6 +147,51 @@ TEST(PhantomImage, labelsGiveTheTruthsHallerIndexToAVoxel) {
   EXPECT_NEAR((right - left + 1) * pixel, deepest->transverse, 2 * pixel);
   EXPECT_NEAR((vertebraFront - sternumBack - 1) * pixel, deepest->sternumToVertebra, 1.5 * pixel);
   EXPECT_NEAR(truth->hallerIndex, settings.haller, 0.02);
+}
+
+TEST(PhantomImage, theTruthsLinesRunThroughTheirVoxels) {
+  Settings settings = coarse();
+  settings.type = "asymmetric";
+  settings.haller = 5;
+  settings.turn = -6;
+  settings.shiftX = 9;
+  settings.matrix = 350;
+  settings.sliceSpacing = 2.5;
+  settings.noise = 0;
+  const Patient patient = makePatient(settings);
+  const Images images = rasterise(patient, settings, [](double) {});
+  const auto truth = makeTruth(patient, images.labels);
+  const Grid& grid = images.ct->grid;
+  const auto labelAt = [&](Vec3 p) {
+    const Vec3 v = grid.toVoxel(p);
+    return int(images.labels->label[grid.index(int(std::lround(v.x)), int(std::lround(v.y)), int(std::lround(v.z)))]);
+  };
+  for (const Rib& rib : truth->anatomy->ribs) {
+    int hits = 0;
+    for (const Vec3& p : rib.centerline) hits += labelAt(p) == ribLabel(rib.side, rib.number);
+    EXPECT_GE(hits, int(rib.centerline.size()) - 2) << sideName(rib.side) << rib.number;
+  }
+  for (const CartilageLine& cartilage : truth->cartilages) {
+    // At its ends it lies under rib, sternum or the cartilage that it joins; the first two are short and end within
+    // the broad manubrium.
+    int hits = 0;
+    for (const Vec3& p : cartilage.centerline) hits += labelAt(p) == cartilageLabel(cartilage.side, cartilage.rib);
+    EXPECT_GT(hits, cartilage.rib <= 2 ? 1 : 0.6 * double(cartilage.centerline.size())) << sideName(cartilage.side) << cartilage.rib;
+  }
+  int hits = 0;
+  for (const Vec3& p : truth->anatomy->sternum.axis) hits += labelAt(p) == kSternum;
+  EXPECT_GE(hits, int(truth->anatomy->sternum.axis.size()) - 2);
+  // In front of the skin's line is air, behind it the body.
+  int outside = 0, inside = 0, lines = 0;
+  for (const LayerSlice& slice : truth->anatomy->skin)
+    for (const Vec3& p : slice.points) {
+      if (p.y > -80) continue;  // where the front faces forwards
+      ++lines;
+      outside += labelAt(p - Vec3{0, 3, 0}) == kAir;
+      inside += labelAt(p + Vec3{0, 3, 0}) != kAir;
+    }
+  EXPECT_GT(outside, int(0.99 * lines));
+  EXPECT_GT(inside, int(0.99 * lines));
 }
 
 TEST(PhantomImage, tissuesHaveTheirHounsfieldUnits) {
