@@ -37,14 +37,17 @@ class PhantomStage final : public Stage {
     v.flag("clothing", s_.hasClothing, "A thin shirt.");
     v.real("noise", s_.noise, "HU", {0, 200}, {0, 80}, "Standard deviation of the CT's noise.");
     v.real("texture", s_.texture, "", {0, 3}, {0, 2}, "Factor on the tissues' own unevenness.");
-    v.real("calcification", s_.calcification, "", {0, 1}, {0, 0.5}, "Share of the costal cartilages that is calcified.");
-    v.integer("seed", s_.seed, "", {0, 2147483647}, {1, 100}, "Chooses noise, texture, vessels and the scanner's errors.");
+    v.real("calcification", s_.calcification, "", {0, 1}, {0, 0.5},
+           "Share of the costal cartilages that is calcified.");
+    v.integer("seed", s_.seed, "", {0, 2147483647}, {1, 100},
+              "Chooses noise, texture, vessels and the scanner's errors.");
     v.real("lift", s_.lift, "mm", {0, 80}, {0, 60},
            "Elevation of the deepest bony point by the operation. The sternum turns about a pivot 160 mm cranial of "
            "it; more than the pit's depth gives an overcorrected chest.");
     v.real("scan_spacing", s_.scanSpacing, "mm", {0.3, 10}, {0.5, 3}, "Distance of the scan's points and lines.");
     v.real("scan_noise", s_.scanNoise, "mm", {0, 5}, {0, 2}, "Standard deviation of the scan along the normal.");
-    v.real("scan_misregistration", s_.scanMisregistration, "mm", {0, 10}, {0, 1}, "RMS shift between the scan's sweeps.");
+    v.real("scan_misregistration", s_.scanMisregistration, "mm", {0, 10}, {0, 1},
+           "RMS shift between the scan's sweeps.");
     v.real("landmark_noise", s_.landmarkNoise, "mm", {0, 20}, {0, 5},
            "Standard deviation of the scan's landmarks along each axis. The CT's are exact.");
   }
