@@ -28,8 +28,8 @@ Deformity::Deformity(const Skeleton& skeleton, const PitShape& shape) : skeleton
   DeformityLevel level = at(deepestZ_);
   level.amount = 1, level.torsionSlope = 0;
   deepestX_ = std::abs(level.slope) < 1e-9 ? 0 : std::copysign(level.plate, level.slope);
-  norm_ = level.bone(deepestX_);
-  skinGain_ = skinShare_ * norm_ / evenedOut([&](double x) { return level.bone(x); }, deepestX_);
+  norm_ = std::max(1e-6, level.bone(deepestX_));
+  skinGain_ = skinShare_ * norm_ / std::max(1e-6, evenedOut([&](double x) { return level.bone(x); }, deepestX_));
 }
 
 double DeformityLevel::raw(double x) const {

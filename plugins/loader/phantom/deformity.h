@@ -48,6 +48,8 @@ class Deformity {
   double skinGain() const { return skinGain_; }
   /// 0.8 for narrow pits to 0.95 for wide ones.
   double skinShare() const { return skinShare_; }
+  /// A(x) at the deepest place of the sternum: near 0 if the pit lies beside it.
+  double sternalShare() const { return norm_; }
   /// Where the pit is deepest (the sternum's edge if it is turned), body frame.
   double deepestX() const { return deepestX_; }
   double deepestZ() const { return deepestZ_; }

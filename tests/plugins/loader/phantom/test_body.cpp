@@ -82,6 +82,34 @@ TEST(Phantom, refusesAnIndexThatTheBodyCannotHave) {
   }
 }
 
+TEST(Phantom, refusesAPitBesideTheSternum) {
+  Settings settings = coarse();
+  settings.type = "trench";
+  settings.eccentricity = -40;
+  EXPECT_THROW(makePatient(settings), Error);
+}
+
+TEST(Phantom, staysFiniteAtTheEndsOfItsSettings) {
+  for (const char* type : {"cup", "saucer", "trench", "asymmetric"})
+    for (double end : {-1.0, 1.0}) {
+      Settings settings = coarse();
+      settings.type = type;
+      settings.haller = 4.5;
+      settings.eccentricity = 8 * end;
+      settings.asymmetry = 0.45 * end;
+      settings.torsion = 10 * end;
+      settings.age = end < 0 ? 6 : 60;
+      settings.bmi = end < 0 ? 13 : 35;
+      settings.turn = 20 * end;
+      settings.lift = end < 0 ? 0 : 80;
+      const Patient patient = makePatient(settings);
+      const auto truth = truthOf(patient);
+      EXPECT_NEAR(truth->hallerIndex, 4.5, 0.02) << type;
+      for (const auto& mesh : {truth->skinBefore, truth->skinAfter, truth->pleura})
+        for (const Vec3& p : mesh->points) ASSERT_TRUE(isFinite(p)) << type;
+    }
+}
+
 TEST(Phantom, refusesMoreTorsionThanAMildIndexAllows) {
   Settings settings = coarse();
   settings.haller = 3;
