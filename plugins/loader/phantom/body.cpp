@@ -18,6 +18,8 @@ Vec3 Pose::toBody(Vec3 ct) const {
 
 namespace {
 
+constexpr double kBoneHalf = 5.5;  // from the wall's mid-surface to the outside of the bone, mm
+
 /// y of a surface's front in each column: walks from straight ahead to the side as long as x grows.
 std::vector<float> frontLine(const PolarTable& surface, double z, int half) {
   std::vector<float> line(2 * half + 1);
@@ -40,12 +42,17 @@ std::vector<float> frontLine(const PolarTable& surface, double z, int half) {
 }  // namespace
 
 Level::Level(const Torso& torso, const Deformity& deformity, double z)
-    : z_(z), inner_(frontLine(torso.inner, z, kHalf)), outer_(frontLine(torso.muscle, z, kHalf)),
+    : z_(z), inner_(frontLine(torso.inner, z, kHalf)), outer_(frontLine(torso.wall, z, kHalf)),
       skin_(frontLine(torso.skin, z, kHalf)) {
   const DeformityLevel deformed = deformity.at(z);
   for (int x = -kHalf; x <= kHalf; ++x) bone_.push_back(float(deformed.bone(x)));
-  for (int x = -kHalf; x <= kHalf; ++x)
-    skinMove_.push_back(float(deformity.skinGain() * evenedOut([&](double at) { return lookup(bone_, at); }, x)));
+  for (int x = -kHalf; x <= kHalf; ++x) {
+    const std::size_t i = std::size_t(x + kHalf);
+    outer_[i] -= float(kBoneHalf);
+    // Soft tissue is squeezed to no less than a quarter of its thickness.
+    const double move = deformity.skinGain() * evenedOut([&](double at) { return lookup(bone_, at); }, x);
+    skinMove_.push_back(float(std::min(move, bone_[i] + 0.75 * (outer_[i] - skin_[i]))));
+  }
 }
 
 double Level::lookup(const std::vector<float>& table, double x) const {

@@ -9,6 +9,7 @@
 namespace pectora::phantom {
 namespace {
 
+constexpr double kLeastSternalShare = 0.2;  // of the pit's profile, at the sternum
 constexpr double kSmallestGap = 16;  // between sternum and vertebra, mm of the unscaled body
 
 std::string text(double value) {
@@ -78,6 +79,13 @@ Patient makePatient(const Settings& settings) {
     shape.depth = depth;
     return Body{torso, Deformity(torso->skeleton, shape), pose};
   };
+
+  if (bodyWith(0).deformity.sternalShare() < kLeastSternalShare)
+    throw Error("the pit lies beside the sternum")
+        .of("eccentricity").given(text(settings.eccentricity))
+        .allowed("a pit that reaches the sternum; type \"" + settings.type + "\" adds " +
+                 text(shape.eccentricity * pose.scale - settings.eccentricity) + " mm")
+        .advise("bring the pit nearer to the midline");
 
   const double flat = hallerIndex(bodyWith(0), grid);
   if (settings.haller <= flat) {

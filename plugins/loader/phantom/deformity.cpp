@@ -17,7 +17,7 @@ Deformity::Deformity(const Skeleton& skeleton, const PitShape& shape) : skeleton
     case PitType::cup: exponent_ = 2, width_ = 38, riseFrom_ = -10, riseTo_ = 85; break;
     case PitType::asymmetric: exponent_ = 2, width_ = 42, riseFrom_ = -10, riseTo_ = 85; break;
     case PitType::saucer: exponent_ = 4, width_ = 70, riseFrom_ = -10, riseTo_ = 70; break;
-    case PitType::trench: exponent_ = 2, width_ = 25, riseFrom_ = -85, riseTo_ = -45; break;
+    case PitType::trench: exponent_ = 2, width_ = 25, riseFrom_ = -45, riseTo_ = 5; break;
   }
   // Wavelength of the pit as four half widths: 100 mm gives 0.8, 280 mm 0.95.
   skinShare_ = 0.8 + 0.15 * std::clamp((4 * width_ - 100) / 180, 0.0, 1.0);
@@ -28,8 +28,8 @@ Deformity::Deformity(const Skeleton& skeleton, const PitShape& shape) : skeleton
   DeformityLevel level = at(deepestZ_);
   level.amount = 1, level.torsionSlope = 0;
   deepestX_ = std::abs(level.slope) < 1e-9 ? 0 : std::copysign(level.plate, level.slope);
-  norm_ = level.bone(deepestX_);
-  skinGain_ = skinShare_ * norm_ / evenedOut([&](double x) { return level.bone(x); }, deepestX_);
+  norm_ = std::max(1e-6, level.bone(deepestX_));
+  skinGain_ = skinShare_ * norm_ / std::max(1e-6, evenedOut([&](double x) { return level.bone(x); }, deepestX_));
 }
 
 double DeformityLevel::raw(double x) const {
@@ -42,7 +42,7 @@ double DeformityLevel::bone(double x) const {
   // Beyond the sternum's edge the rigid plate goes over into the pit's own shape.
   const double edge = std::clamp(x, -plate, plate);
   const double within = mean + slope * edge;
-  const double beyond = step(std::max(junction, plate + 5), plate, std::abs(x));
+  const double beyond = step(junction, plate, std::abs(x));
   const double shape = x == edge ? within : raw(x) + (within - raw(edge)) * beyond;
   return amount * shape + torsionSlope * edge * beyond;
 }
@@ -55,9 +55,9 @@ DeformityLevel Deformity::at(double z) const {
   level.widthRight = width_ * (1 + shape_.asymmetry);
   level.widthLeft = width_ * (1 - shape_.asymmetry);
   level.exponent = exponent_;
-  level.junction = junctionX(*skeleton_, z);
-  const double at[] = {-51, -5, 100, 132}, halves[] = {28, 19.5, 19.5, 9};
-  level.plate = std::min(piecewise(at, halves, s), level.junction - 3);
+  const double at[] = {-51, -28, -5, 100, 132}, halves[] = {30, 29, 19.5, 19.5, 9};
+  level.plate = piecewise(at, halves, s);
+  level.junction = std::max(junctionX(*skeleton_, z), level.plate + 8);
 
   // Regression of the raw profile over the sternum's width.
   double sum = 0, moment = 0, squares = 0;

@@ -14,7 +14,7 @@ struct PitShape {
   PitType type = PitType::cup;
   double depth = 0;       ///< d_p, displacement of the bone at the deepest point
   double eccentricity = 0;  ///< x of the deepest point relative to the midline; negative: to the right
-  double asymmetry = 0;   ///< (right half width - left) / (right + left), -0.8 to 0.8
+  double asymmetry = 0;   ///< (right half width - left) / (right + left), -0.7 to 0.7
   double torsionDeg = 0;  ///< rotation of the sternum's section about its axis; positive: left side deeper
   double lift = 0;        ///< elevation of the deepest point by the operation
 };
@@ -48,6 +48,8 @@ class Deformity {
   double skinGain() const { return skinGain_; }
   /// 0.8 for narrow pits to 0.95 for wide ones.
   double skinShare() const { return skinShare_; }
+  /// A(x) at the deepest place of the sternum: near 0 if the pit lies beside it.
+  double sternalShare() const { return norm_; }
   /// Where the pit is deepest (the sternum's edge if it is turned), body frame.
   double deepestX() const { return deepestX_; }
   double deepestZ() const { return deepestZ_; }

@@ -105,7 +105,8 @@ SpineLevel::SpineLevel(double z) : z_(z), waist_(0), toEndPlate_(1e9), isDisc_(f
     for (double sign : {-1.0, 1.0}) {
       if (isThoracic) processes_.push_back({{sign * 13, 8, upper}, {sign * 18.5, kRibBack - 2, upper - 0.5}, 3.8});
       processes_.push_back({{sign * 10, 9, upper - 8}, {sign * 11, 24, upper - 8}, 3.6});
-      processes_.push_back({{sign * 11, 25, upper - 7}, {sign * (isThoracic ? 25 : 30), isThoracic ? 41.0 : 28.0, upper - 6}, 4});
+      const Vec3 tip = isThoracic ? Vec3{sign * 25, 41, upper - 6} : Vec3{sign * 30, 28, upper - 6};
+      processes_.push_back({{sign * 11, 25, upper - 7}, tip, 4});
     }
     processes_.push_back({{0, 36, upper - 10}, {0, 54, upper - (isThoracic ? 24 : 14)}, 3.6});
   }

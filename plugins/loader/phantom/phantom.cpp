@@ -23,7 +23,10 @@ void blur(std::vector<float>& image, int size, double sigma) {
   std::vector<float> kernel;
   const int reach = int(std::ceil(3 * sigma));
   float sum = 0;
-  for (int i = -reach; i <= reach; ++i) kernel.push_back(float(std::exp(-i * i / (2 * sigma * sigma)))), sum += kernel.back();
+  for (int i = -reach; i <= reach; ++i) {
+    kernel.push_back(float(std::exp(-i * i / (2 * sigma * sigma))));
+    sum += kernel.back();
+  }
   for (float& k : kernel) k /= sum;
   std::vector<float> rows(image.size(), 0.0f);
   for (int j = 0; j < size; ++j) {
@@ -57,12 +60,12 @@ void drawSlice(const Drawing& drawing, int k, Canvas& canvas, std::vector<float>
   if (drawing.settings.texture > 0) {
     const int extent = int(drawing.settings.fov / kGrainMm) + 1;
     const GrainSlice grains(z / kGrainMm, extent, hash(std::uint64_t(drawing.settings.seed), 21));
-    const float perPixel = float(grid.spacing.x / kGrainMm);
+    const float perPixel = float(grid.spacing.x / kGrainMm), factor = float(drawing.settings.texture);
     for (int j = 0; j < grid.size[1]; ++j)
       for (int i = 0; i < grid.size[0]; ++i) {
         const std::size_t index = std::size_t(j) * grid.size[0] + i;
         if (texture[index] > 0)
-          mean[index] += float(drawing.settings.texture) * texture[index] * grains.at(float(i) * perPixel, float(j) * perPixel);
+          mean[index] += factor * texture[index] * grains.at(float(i) * perPixel, float(j) * perPixel);
       }
   }
   blur(mean, grid.size[0], kPointSpreadMm / grid.spacing.x);

@@ -12,12 +12,12 @@ namespace pectora::phantom {
 
 /// Everything that makes one patient. Lengths are mm of the patient unless said.
 struct Settings {
-  double haller = 4;             ///< Haller index, measured at the deepest level of the sternal body
+  double haller = 4;             ///< Haller index at the deepest level (Anatomy::deepestLevel)
   std::string type = "cup";      ///< cup, saucer, trench, asymmetric
   double eccentricity = 0;       ///< x of the deepest point; negative: patient's right
-  double asymmetry = 0;          ///< -0.8 to 0.8; positive: the right half of the pit is wider
+  double asymmetry = 0;          ///< -0.45 to 0.45; positive: the right half of the pit is wider
   double torsion = 0;            ///< degrees
-  double flattening = 0.05;      ///< share of the chest's depth that is lost over its whole width
+  double flattening = 0.05;      ///< share of the chest's depth that is lost over its whole width, at most
   double age = 16;               ///< years
   double bmi = 19.9;             ///< kg/m^2
   std::string coverage = "torso";  ///< torso, thorax
@@ -60,13 +60,13 @@ struct Images {
 Images rasterise(const Patient& patient, const Settings& settings, const Progress& progress);
 
 /// The exact anatomy before the operation, on the CT's levels.
-std::shared_ptr<const Truth> makeTruth(const Patient& patient, const Settings& settings,
-                                       std::shared_ptr<const Labels> labels);
+std::shared_ptr<const Truth> makeTruth(const Patient& patient, std::shared_ptr<const Labels> labels);
 
 /// The four landmarks on the skin of `body`, in the CT frame: neck, navel, nipple_right, nipple_left.
 Landmarks skinLandmarks(const Body& body);
 
-/// A hand-held scan of the skin after the operation, in the scanner's own frame, with its landmarks.
+/// A hand-held scan of the skin after the operation, with its landmarks, in the scanner's own frame: x to the patient's
+/// left, y up and z forwards as it stands before him, then tilted by up to 25 degrees and shifted as the seed will.
 struct Scan {
   std::shared_ptr<const Points> points;
   std::shared_ptr<const Landmarks> landmarks;

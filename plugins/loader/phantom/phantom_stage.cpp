@@ -10,18 +10,19 @@ class PhantomStage final : public Stage {
   void describe(Visitor& v) override {
     v.real("haller", s_.haller, "", {1.8, 20}, {2, 8},
            "Haller index at the deepest level of the sternal body: inner width over sternum-to-vertebra distance. "
-           "A chest without a pit has about 2.4; below that the chest is made rounder.");
+           "A normal chest has about 2.45; below that it is made rounder.");
     v.choice("type", s_.type, {"cup", "saucer", "trench", "asymmetric"},
              "Shape of the pit: narrow and round, wide and shallow-edged, long and oblique to the right, or a pit to "
              "the right with a turned sternum.");
     v.real("eccentricity", s_.eccentricity, "mm", {-40, 40}, {-25, 25},
            "How far the pit's middle lies to the patient's left (negative: right); adds to that of the type.");
-    v.real("asymmetry", s_.asymmetry, "", {-0.8, 0.7}, {-0.4, 0.4},
+    v.real("asymmetry", s_.asymmetry, "", {-0.45, 0.45}, {-0.4, 0.4},
            "Wider right (positive) or left half of the pit, as a share of its width; adds to that of the type.");
     v.real("torsion", s_.torsion, "deg", {-45, 45}, {-30, 30},
            "Rotation of the sternum about its axis, positive: left side deeper; adds to that of the type.");
     v.real("flattening", s_.flattening, "", {0, 0.2}, {0, 0.2},
-           "Share of the chest's depth that is lost over its whole width, beside the pit.");
+           "Share of the chest's depth that is lost over its whole width, beside the pit. A mild index is "
+           "reached with less of it and no pit.");
     v.real("age", s_.age, "years", {6, 60}, {10, 18}, "Size of the body, by the growth of the sternum up to 18 years.");
     v.real("bmi", s_.bmi, "kg/m^2", {13, 35}, {16, 26}, "Thickness of the fat, by the square of bmi / 20.");
     v.choice("coverage", s_.coverage, {"torso", "thorax"},
@@ -36,14 +37,17 @@ class PhantomStage final : public Stage {
     v.flag("clothing", s_.hasClothing, "A thin shirt.");
     v.real("noise", s_.noise, "HU", {0, 200}, {0, 80}, "Standard deviation of the CT's noise.");
     v.real("texture", s_.texture, "", {0, 3}, {0, 2}, "Factor on the tissues' own unevenness.");
-    v.real("calcification", s_.calcification, "", {0, 1}, {0, 0.5}, "Share of the costal cartilages that is calcified.");
-    v.integer("seed", s_.seed, "", {0, 2147483647}, {1, 100}, "Chooses noise, texture, vessels and the scanner's errors.");
+    v.real("calcification", s_.calcification, "", {0, 1}, {0, 0.5},
+           "Share of the costal cartilages that is calcified.");
+    v.integer("seed", s_.seed, "", {0, 2147483647}, {1, 100},
+              "Chooses noise, texture, vessels and the scanner's errors.");
     v.real("lift", s_.lift, "mm", {0, 80}, {0, 60},
            "Elevation of the deepest bony point by the operation. The sternum turns about a pivot 160 mm cranial of "
            "it; more than the pit's depth gives an overcorrected chest.");
     v.real("scan_spacing", s_.scanSpacing, "mm", {0.3, 10}, {0.5, 3}, "Distance of the scan's points and lines.");
     v.real("scan_noise", s_.scanNoise, "mm", {0, 5}, {0, 2}, "Standard deviation of the scan along the normal.");
-    v.real("scan_misregistration", s_.scanMisregistration, "mm", {0, 10}, {0, 1}, "RMS shift between the scan's sweeps.");
+    v.real("scan_misregistration", s_.scanMisregistration, "mm", {0, 10}, {0, 1},
+           "RMS shift between the scan's sweeps.");
     v.real("landmark_noise", s_.landmarkNoise, "mm", {0, 20}, {0, 5},
            "Standard deviation of the scan's landmarks along each axis. The CT's are exact.");
   }
@@ -57,7 +61,7 @@ class PhantomStage final : public Stage {
       host.progress(0.05 + 0.85 * done, "drawing slices");
     });
     host.progress(0.9, "measuring the truth");
-    auto truth = makeTruth(patient, s_, images.labels);
+    auto truth = makeTruth(patient, images.labels);
     for (const LayerSlice& slice : truth->anatomy->skin)
       if (slice.clipped) {
         host.warn("the body is wider than the field of view: raise fov or lower bmi, turn or shift");

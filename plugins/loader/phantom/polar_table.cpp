@@ -122,10 +122,12 @@ void PolarTable::smooth(int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     PolarTable old = *this;
     for (int j = 0; j < levels(); ++j)
-      for (int i = 0; i < kAngles; ++i) value(i, j) = (old.value(i - 1, j) + 2 * old.value(i, j) + old.value(i + 1, j)) / 4;
+      for (int i = 0; i < kAngles; ++i)
+        value(i, j) = (old.value(i - 1, j) + 2 * old.value(i, j) + old.value(i + 1, j)) / 4;
     old = *this;
     for (int j = 1; j + 1 < levels(); ++j)
-      for (int i = 0; i < kAngles; ++i) value(i, j) = (old.value(i, j - 1) + 2 * old.value(i, j) + old.value(i, j + 1)) / 4;
+      for (int i = 0; i < kAngles; ++i)
+        value(i, j) = (old.value(i, j - 1) + 2 * old.value(i, j) + old.value(i, j + 1)) / 4;
   }
 }
 

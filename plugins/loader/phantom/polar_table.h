@@ -54,8 +54,9 @@ class PolarTable {
   int levels() const;
   static double angle(int i);
   static double level(int j) { return kBottom + j * kStep; }
-  double& value(int i, int j) { return values_[std::size_t(j) * kAngles + (i % kAngles + kAngles) % kAngles]; }
-  double value(int i, int j) const { return const_cast<PolarTable*>(this)->value(i, j); }
+  static std::size_t index(int i, int j) { return std::size_t(j) * kAngles + (i % kAngles + kAngles) % kAngles; }
+  double& value(int i, int j) { return values_[index(i, j)]; }
+  double value(int i, int j) const { return values_[index(i, j)]; }
   std::vector<double> values_;
 };
 

@@ -42,8 +42,9 @@ Drawing::Drawing(const Patient& p, const Settings& s)
   couchTop = -1e9;
   const Pose& pose = p.before.pose;
   for (double z = pose.levelToBody(p.grid.origin.z); z < 20; z += 10)
-    for (int degree = 100; degree <= 260; degree += 2)
-      couchTop = std::max(couchTop, pose.toCt(p.before.torso->skin.at(radians(degree > 180 ? degree - 360 : degree), z)).y + 2);
+    for (int degree = 100; degree <= 180; degree += 2)
+      for (int side : {-1, 1})
+        couchTop = std::max(couchTop, pose.toCt(p.before.torso->skin.at(radians(side * degree), z)).y + 2);
 }
 
 Canvas::Canvas(const Grid& grid)
@@ -196,7 +197,8 @@ void drawThinSlice(const Drawing& drawing, double ctZ, Canvas& canvas) {
           const double toInner = slice.inner.distance(a, t, r);
           pixel.cover(toMuscle, kMuscleHu, kMuscle);
           // Thin layers of fat part the intercostals from the muscles outside and from the pleura.
-          if (slice.z < 0 && slice.z > -300) pixel.cover(std::max(std::abs(toWall - 4.6) - 0.5, toMuscle + 2), kFatHu, kFat);
+          if (slice.z < 0 && slice.z > -300)
+            pixel.cover(std::max(std::abs(toWall - 4.6) - 0.5, toMuscle + 2), kFatHu, kFat);
           pixel.cover(toInner - 1.3, kFatHu, kFat);
           const float toVessel = canvas.vessels.distance(index);
           if (toInner < 2) slice.drawInside(pixel, p, toInner, toVessel < 2, toVessel * toBody);

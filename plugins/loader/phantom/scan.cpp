@@ -3,7 +3,6 @@
 
 #include "noise.h"
 #include "smooth.h"
-#include "kernel/value/curve.h"
 
 namespace pectora::phantom {
 namespace {
@@ -100,7 +99,8 @@ Scan scanSkin(const Patient& patient, const Settings& settings) {
     const Rigid frame{{{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}, {}};
     for (int row = 0; row < 3; ++row) {
       const Vec3 r = tilt.rows[row];
-      toScanner.rows[row] = {dot(r, frame.turn({1, 0, 0})), dot(r, frame.turn({0, 1, 0})), dot(r, frame.turn({0, 0, 1}))};
+      const auto entry = [&](Vec3 unit) { return dot(r, frame.turn(unit)); };
+      toScanner.rows[row] = {entry({1, 0, 0}), entry({0, 1, 0}), entry({0, 0, 1})};
     }
     toScanner.shift = normals3(random) * 120 + Vec3{150, 80, 420};
   }

@@ -8,9 +8,9 @@ std::vector<std::string> labelNames() {
                                  "disc",    "canal",   "sternum",  "xiphoid", "couch", "clothing"};
   names.resize(kLabels);
   for (Side side : {Side::right, Side::left}) {
-    for (int n = 1; n <= 12; ++n) names[ribLabel(side, n)] = std::string("rib_") + sideName(side) + "_" + std::to_string(n);
-    for (int n = 1; n <= 10; ++n)
-      names[cartilageLabel(side, n)] = std::string("cartilage_") + sideName(side) + "_" + std::to_string(n);
+    const std::string of = std::string("_") + sideName(side) + "_";
+    for (int n = 1; n <= 12; ++n) names[ribLabel(side, n)] = "rib" + of + std::to_string(n);
+    for (int n = 1; n <= 10; ++n) names[cartilageLabel(side, n)] = "cartilage" + of + std::to_string(n);
   }
   return names;
 }

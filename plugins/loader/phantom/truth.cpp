@@ -105,7 +105,7 @@ LayerSlice layer(const Body& body, const PolarTable& surface, const Level& level
 
 }  // namespace
 
-std::shared_ptr<const Truth> makeTruth(const Patient& patient, const Settings&, std::shared_ptr<const Labels> labels) {
+std::shared_ptr<const Truth> makeTruth(const Patient& patient, std::shared_ptr<const Labels> labels) {
   const Body& body = patient.before;
   const Skeleton& skeleton = body.torso->skeleton;
   const Grid& grid = patient.grid;

@@ -90,13 +90,16 @@ std::vector<TubePiece> lungVessels(const Body& body, std::uint64_t seed) {
   for (double sign : {-1.0, 1.0})
     for (int vessel = 0; vessel < 90; ++vessel) {
       // Each starts at the hilum (or on a vessel's way) and wanders outwards, growing thinner.
-      Vec3 p{sign * (24 + 10 * random.uniform()), -22 - 16 * random.uniform(), -105 - 40 * random.uniform()};
-      Vec3 direction = normalized({sign * (0.25 + random.uniform()), random.uniform() * 2 - 1, random.uniform() * 2.4 - 1.4});
+      const double startX = 24 + 10 * random.uniform(), startY = -22 - 16 * random.uniform();
+      Vec3 p{sign * startX, startY, -105 - 40 * random.uniform()};
+      const double out = 0.25 + random.uniform(), back = random.uniform() * 2 - 1, up = random.uniform() * 2.4 - 1.4;
+      Vec3 direction = normalized({sign * out, back, up});
       double radius = 1.2 + 2.2 * random.uniform() * random.uniform();
       std::vector<Vec3> line{p};
       std::vector<double> radii{radius};
       for (int i = 0; i < 16; ++i) {
-        direction = normalized(direction + Vec3{random.normal(), random.normal(), random.normal()} * 0.16);
+        const double dx = random.normal(), dy = random.normal(), dz = random.normal();
+        direction = normalized(direction + Vec3{dx, dy, dz} * 0.16);
         p += direction * 6;
         radius *= 0.92;
         line.push_back(p);
