@@ -1,5 +1,6 @@
 #include "kernel/physics/workers.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -11,12 +12,14 @@ namespace pectora {
 namespace {
 
 int threadCount = std::max(1, int(std::thread::hardware_concurrency()));
+std::unique_ptr<tbb::global_control> limit;   // lets TBB have more threads than the machine has cores
 std::unique_ptr<tbb::task_arena> arena;
 
 }  // namespace
 
 void setThreads(int count) {
   threadCount = std::max(1, count);
+  limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, std::size_t(threadCount));
   arena = std::make_unique<tbb::task_arena>(threadCount);
 }
 

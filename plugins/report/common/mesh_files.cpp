@@ -110,13 +110,13 @@ Mesh barMesh(const std::vector<Vec3>& line, double width, double height) {
   for (int i = 0; i + 1 < count; ++i) {
     for (int k = 0; k < 4; ++k) {
       const int a = 4 * i + k, b = 4 * i + (k + 1) % 4;
-      mesh.triangles.push_back({a, b, b + 4});
-      mesh.triangles.push_back({a, b + 4, a + 4});
+      mesh.triangles.push_back({a, b + 4, b});
+      mesh.triangles.push_back({a, a + 4, b + 4});
     }
   }
   if (count > 1) {
     const int last = 4 * (count - 1);
-    mesh.triangles.insert(mesh.triangles.end(), {{0, 3, 2}, {0, 2, 1}, {last, last + 1, last + 2}, {last, last + 2, last + 3}});
+    mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 3}, {0, 1, 2}, {last, last + 2, last + 1}, {last, last + 3, last + 2}});
   }
   return mesh;
 }

@@ -1,0 +1,111 @@
+#include "plugins/comparer/surface/surface_tree.h"
+
+#include "kernel/stage/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace pectora;
+
+namespace {
+
+Mesh cube() {
+  Mesh m;
+  for (int i = 0; i < 8; ++i) m.points.push_back({i & 1 ? 1. : -1., i & 2 ? 1. : -1., i & 4 ? 1. : -1.});
+  m.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return m;
+}
+
+// A wavy open sheet whose normals point to -y.
+Mesh sheet(int n) {
+  Mesh m;
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < n; ++c) m.points.push_back({double(c), 1.5 * std::sin(0.6 * c) * std::cos(0.4 * r), double(r)});
+  for (int r = 0; r + 1 < n; ++r)
+    for (int c = 0; c + 1 < n; ++c) {
+      const int a = r * n + c;
+      m.triangles.push_back({a, a + 1, a + n + 1});
+      m.triangles.push_back({a, a + n + 1, a + n});
+    }
+  return m;
+}
+
+double bruteForce(const Mesh& mesh, Vec3 p) {
+  double best = INFINITY;
+  for (const auto& t : mesh.triangles) best = std::min(best, distance(p, closestOnTriangle(p, mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]).point));
+  return best;
+}
+
+}  // namespace
+
+TEST(ClosestOnTriangle, FindsEachFeature) {
+  const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
+  EXPECT_EQ(closestOnTriangle({-1, -1, 2}, a, b, c).feature, Feature::cornerA);
+  EXPECT_EQ(closestOnTriangle({6, -1, 2}, a, b, c).feature, Feature::cornerB);
+  EXPECT_EQ(closestOnTriangle({-1, 6, 2}, a, b, c).feature, Feature::cornerC);
+  EXPECT_EQ(closestOnTriangle({2, -1, 2}, a, b, c).feature, Feature::edgeAB);
+  EXPECT_EQ(closestOnTriangle({3, 3, 2}, a, b, c).feature, Feature::edgeBC);
+  EXPECT_EQ(closestOnTriangle({-1, 2, 2}, a, b, c).feature, Feature::edgeCA);
+  EXPECT_EQ(closestOnTriangle({1, 1, 2}, a, b, c).feature, Feature::face);
+  EXPECT_LT(distance(closestOnTriangle({1, 1, 2}, a, b, c).point, {1, 1, 0}), 1e-15);
+}
+
+TEST(ClosestOnTriangle, SurvivesTrianglesWithoutArea) {
+  for (const auto& [a, b, c] : {std::array<Vec3, 3>{Vec3{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {Vec3{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {Vec3{0, 0, 0}, {0, 0, 0}, {3, 0, 0}}}) {
+    const Vec3 found = closestOnTriangle({1, 5, 0}, a, b, c).point;
+    EXPECT_TRUE(isFinite(found));
+    const double best = std::min({distance({1, 5, 0}, a), distance({1, 5, 0}, b), distance({1, 5, 0}, c)});
+    EXPECT_LE(distance({1, 5, 0}, found), best + 1e-12);
+  }
+}
+
+TEST(SurfaceTree, GivesTheDistanceOfACubeInClosedForm) {
+  const SurfaceTree tree(cube());
+  EXPECT_NEAR(tree.closest({3, 0, 0}).distance, 2, 1e-15);
+  EXPECT_NEAR(tree.closest({2, 2, 2}).distance, std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(tree.closest({2, 2, 0}).distance, std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(tree.closest({0.5, 0, 0}).distance, -0.5, 1e-15);
+  EXPECT_NEAR(tree.closest({0.9, 0.8, 0.7}).distance, -0.1, 1e-15);
+  EXPECT_FALSE(tree.closest({3, 0, 0}).onBorder);
+}
+
+TEST(SurfaceTree, AgreesWithBruteForceAndNeverHasTheWrongSideOfAnOpenSheet) {
+  const Mesh mesh = sheet(20);
+  const SurfaceTree tree(mesh);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> along(0.5, 18.5), off(0.05, 1.2);
+  for (int i = 0; i < 3000; ++i) {
+    // Start on a face and leave along its normal: the side is known by construction while the face stays the nearest.
+    const auto& t = mesh.triangles[random() % mesh.triangles.size()];
+    const Vec3 a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
+    const Vec3 normal = normalized(cross(b - a, c - a));
+    const double d = (i % 2 ? 1 : -1) * off(random);
+    const Vec3 p = (a + b + c) / 3 + normal * d;
+    const SurfaceHit hit = tree.closest(p);
+    EXPECT_NEAR(std::abs(hit.distance), bruteForce(mesh, p), 1e-13);
+    const bool faceIsNearest = std::abs(std::abs(hit.distance) - std::abs(d)) < 1e-12;
+    EXPECT_TRUE(!faceIsNearest || hit.distance * d > 0);
+  }
+}
+
+TEST(SurfaceTree, FlagsPointsBeyondTheBorder) {
+  const SurfaceTree tree(sheet(10));
+  EXPECT_TRUE(tree.closest({-3, 0, 4.5}).onBorder);
+  EXPECT_TRUE(tree.closest({-3, 0, -3}).onBorder);
+  EXPECT_FALSE(tree.closest({4.2, 2, 4.5}).onBorder);
+}
+
+TEST(SurfaceTree, RefusesMeshesThatAreNone) {
+  Mesh mesh = cube();
+  mesh.triangles[3][1] = 99;
+  EXPECT_THROW(SurfaceTree{mesh}, Error);
+  mesh = cube();
+  mesh.points[2].x = NAN;
+  EXPECT_THROW(SurfaceTree{mesh}, Error);
+  EXPECT_THROW(SurfaceTree{Mesh{}}, Error);
+  mesh = cube();
+  for (Vec3& p : mesh.points) p = {1, 1, 1};
+  EXPECT_THROW(SurfaceTree{mesh}, Error);
+}

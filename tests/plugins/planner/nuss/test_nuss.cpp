@@ -1,0 +1,96 @@
+#include "plugins/planner/nuss/bar.h"
+#include "plugins/planner/nuss/motion.h"
+
+#include "kernel/stage/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace pectora;
+
+namespace {
+
+Sternum plateSternum() {
+  Sternum s;
+  s.jugularNotch = {0, -90, -40};
+  s.manubriosternalJoint = {0, -95, -86};
+  s.xiphisternalJoint = {0, -75, -180};
+  s.deepest = {0, -72, -160};
+  for (double z = -180; z <= -40; z += 5) s.contours.push_back({{-16, -80, z}, {16, -80, z}, {16, -70, z}, {-16, -70, z}});
+  for (int rib = 2; rib <= 7; ++rib)
+    for (Side side : {Side::right, Side::left}) s.notches.push_back({side, rib, {side == Side::right ? -18.0 : 18.0, -80, -86.0 - 16 * (rib - 2)}});
+  return s;
+}
+
+// Half an ellipse from the back to the front on either side.
+RibCage ribRing() {
+  RibCage cage;
+  auto anatomy = std::make_shared<Anatomy>();
+  anatomy->sternum = plateSternum();
+  cage.anatomy = anatomy;
+  for (const double sign : {-1.0, 1.0}) {
+    Curve curve;
+    curve.knots = clampedKnots(4, 3);
+    curve.controls = {{sign * 20, 60, -120}, {sign * 170, 60, -140}, {sign * 150, -130, -160}, {sign * 60, -105, -165}};
+    cage.ribs.push_back({sign < 0 ? Side::right : Side::left, 5, curve, 0});
+  }
+  return cage;
+}
+
+}  // namespace
+
+TEST(LiftRotation, BringsTheDeepestPointForwardByTheLift) {
+  const Sternum s = plateSternum();
+  for (const Pivot pivot : {Pivot::sternoclavicular, Pivot::manubrium})
+    for (const double lift : {0.0, 1.0, 30.0, 50.0}) {
+      const RigidMotion motion = liftRotation(s, s.deepest, lift, pivot, 160);
+      EXPECT_NEAR(s.deepest.y - motion(s.deepest).y, lift, 1e-9) << lift;
+    }
+}
+
+TEST(LiftRotation, AboutTheSternoclavicularAxisHasTheMeasuredProfile) {
+  // 38.6, 28.4 and 19.4 mm at 0, 4 and 8 cm cranial, SD about 6 mm (PMID 33742267).
+  const Sternum s = plateSternum();
+  const RigidMotion motion = liftRotation(s, s.deepest, 38.6, Pivot::sternoclavicular, 160);
+  const auto rise = [&](double cranial) {
+    const Vec3 p = s.deepest + Vec3{0, 0, cranial};
+    return p.y - motion(p).y;
+  };
+  EXPECT_NEAR(rise(40), 28.4, 2);
+  EXPECT_NEAR(rise(80), 19.4, 2);
+}
+
+TEST(LiftRotation, AboutTheManubriumLeavesTheJointWhereItIs) {
+  const Sternum s = plateSternum();
+  const RigidMotion motion = liftRotation(s, s.deepest, 20, Pivot::manubrium, 160);
+  EXPECT_LT(distance(motion(s.manubriosternalJoint), s.manubriosternalJoint), 1e-12);
+}
+
+TEST(LiftRotation, RefusesWhatNoRotationCanReach) {
+  const Sternum s = plateSternum();
+  EXPECT_THROW(liftRotation(s, s.deepest, 200, Pivot::manubrium, 160), Error);
+  EXPECT_THROW(liftRotation(s, {0, -80, -80}, 10, Pivot::manubrium, 160), Error);
+}
+
+TEST(IntercostalSpace, LiesBelowTheLowestRibThatJoinsAbove) {
+  const RibCage cage = ribRing();
+  EXPECT_EQ(intercostalSpace(cage, -86 - 16 * 2.5), 4);
+  EXPECT_EQ(intercostalSpace(cage, 0), 0);
+}
+
+TEST(Bar, PassesBehindTheLiftedSternumAndEndsAtTheSides) {
+  const RibCage cage = ribRing();
+  const Sternum& s = cage.anatomy->sternum;
+  const RigidMotion motion = liftRotation(s, s.deepest, 25, Pivot::sternoclavicular, 160);
+  const Bar bar = shapeBar(cage, s.deepest, motion, {});
+  ASSERT_GE(bar.centerline.size(), 3u);
+  const Vec3 middle = bar.centerline[bar.centerline.size() / 2];
+  const double back = -70 - 25;  // of the plate, lifted
+  EXPECT_NEAR(middle.x, 0, 2);
+  EXPECT_GT(middle.y, back);     // behind it
+  EXPECT_LT(middle.y, back + 12);
+  EXPECT_LT(bar.centerline.front().x, -100);
+  EXPECT_GT(bar.centerline.back().x, 100);
+  for (const Vec3& p : bar.centerline) EXPECT_NEAR(p.z, middle.z, 1e-9);
+}
