@@ -1,0 +1,161 @@
+#include "plugins/segmenter/thorax/rib_march.h"
+
+#include "kernel/value/curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora::thorax {
+namespace {
+
+constexpr double kStepMm = 2;
+constexpr double kWindowMm = 12, kPixelMm = 0.6;
+constexpr double kHeadMm = 20;             // from the vertebra's middle to where the centreline ends
+constexpr double kDistrustedEndMm = 16;    // of the rough line, at either end
+
+Vec3 spineAt(const Spine& spine, double z, double sliceSpacing) {
+  const double k = std::clamp(z / sliceSpacing, 0.0, double(spine.centre.size() - 1));
+  const std::size_t low = std::size_t(k), high = std::min(low + 1, spine.centre.size() - 1);
+  return lerp(spine.centre[low], spine.centre[high], k - double(low));
+}
+
+/// Direction of a line at one of its points, over a few neighbours.
+Vec3 directionAt(const std::vector<Vec3>& line, std::size_t n) {
+  const std::size_t a = n >= 4 ? n - 4 : 0, b = std::min(n + 4, line.size() - 1);
+  return normalized(line[b] - line[a]);
+}
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// Three rounds of the kernel (1, 2, 1) / 4; the ends stay.
+void smoothLine(std::vector<Vec3>& line) {
+  for (int round = 0; round < 4; ++round) {
+    std::vector<Vec3> from = line;
+    for (std::size_t n = 1; n + 1 < line.size(); ++n) line[n] = (from[n - 1] + from[n] * 2 + from[n + 1]) / 4;
+  }
+}
+
+/// A line that grows at its end.
+struct Growth {
+  std::vector<Vec3> line;         ///< grows at its back
+  std::vector<double> area;       ///< of the cuts
+  Vec3 course() const {
+    const std::size_t n = line.size();
+    const Vec3 recent = normalized(line[n - 1] - line[n - std::min<std::size_t>(n, 6)]);
+    const Vec3 before = n > 12 ? normalized(line[n - 6] - line[n - 12]) : recent;
+    // Half of the turn of the last stretch is carried on.
+    return normalized(recent + (recent - before) * 0.5);
+  }
+};
+
+}  // namespace
+
+Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
+  // Two directions across the line, the first as level as possible.
+  Vec3 e1 = cross(direction, {0, 0, 1});
+  e1 = norm(e1) > 1e-3 ? normalized(e1) : Vec3{1, 0, 0};
+  const Vec3 e2 = normalized(cross(direction, e1));
+  const int half = int(kWindowMm / kPixelMm), size = 2 * half + 1;
+  Plane plane(size, size);
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) {
+      const Vec3 at = p + e1 * ((i - half) * kPixelMm) + e2 * ((j - half) * kPixelMm);
+      plane.at(i, j) = field.contains(at) ? field.at(at) : -1024.0f;
+    }
+  Cut cut;
+  double nearest = 5;
+  for (const Loop& loop : isoContours(plane, float(boneHu))) {
+    const Shape shape = shapeOf(loop);
+    const double area = shape.area * kPixelMm * kPixelMm;
+    if (area < 12 || area > 300 || shape.spreadMajor * kPixelMm > 7.5) continue;
+    const double x = (shape.centroid.x - half) * kPixelMm, y = (shape.centroid.y - half) * kPixelMm;
+    const double distance = isInside(loop, {double(half), double(half)}) ? 0.01 * std::hypot(x, y) : std::hypot(x, y);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    cut = {true, p + e1 * x + e2 * y, area};
+  }
+  return cut;
+}
+
+MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Spine& spine, double boneHu) {
+  MarchedRib rib;
+  const double length = polylineLength(rough), sliceSpacing = field.spacing().z;
+  if (length < 10) return rib;
+  std::vector<Vec3> line = resamplePolyline(rough, std::max(5, int(length / kStepMm)));
+  smoothLine(line);
+  // The inner part of the rough line, twice centred on its cuts.
+  const double distrusted = std::min(kDistrustedEndMm, 0.25 * length);
+  const auto skip = std::ptrdiff_t(distrusted / kStepMm);
+  line = std::vector<Vec3>(line.begin() + skip, line.end() - skip);
+  Growth middle;
+  for (int round = 0; round < 2; ++round) {
+    std::vector<Vec3> centred;
+    middle.area.clear();
+    for (std::size_t n = 0; n < line.size(); ++n) {
+      const Cut cut = cutAcross(field, line[n], directionAt(line, n), boneHu);
+      if (!cut.isFound) continue;
+      centred.push_back(cut.centre);
+      middle.area.push_back(cut.areaMm2);
+    }
+    if (centred.size() < 5) return rib;
+    const double span = polylineLength(centred);
+    line = resamplePolyline(centred, std::max(5, int(span / kStepMm)));
+    smoothLine(line);
+  }
+  const double usual = median(middle.area);
+
+  // Forwards to the end of the bone.
+  Growth front{line, {}};
+  int misses = 0;
+  bool isAtBorder = false;
+  for (int step = 0; step < 60; ++step) {
+    const Vec3 course = front.course(), expected = front.line.back() + course * kStepMm;
+    if (!field.contains(expected, 2)) {
+      isAtBorder = true;
+      break;
+    }
+    const Cut cut = cutAcross(field, expected, course, boneHu);
+    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && distance(cut.centre, expected) < 2.5;
+    if (!isGood && ++misses == 3) break;
+    if (isGood) misses = 0;
+    front.line.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
+  }
+  front.line.resize(front.line.size() - std::size_t(std::min<int>(misses, 2)));
+  rib.reachesJunction = !isAtBorder;
+
+  // Backwards to the side of the vertebral body.
+  Growth back{std::vector<Vec3>(front.line.rbegin(), front.line.rend()), {}};
+  misses = 0;
+  const auto fromBody = [&](Vec3 p) {
+    const Vec3 c = spineAt(spine, p.z, sliceSpacing);
+    return std::hypot(p.x - c.x, p.y - c.y);
+  };
+  double nearest = fromBody(back.line.back());
+  for (int step = 0; step < 50 && nearest > kHeadMm; ++step) {
+    Vec3 course = back.course();
+    const Vec3 tip = back.line.back(), body = spineAt(spine, tip.z, sliceSpacing);
+    const double bend = misses > 0 ? 0.12 : 0.03;
+    if (nearest < 60) course = normalized(course * (1 - bend) + normalized(body - tip) * bend);
+    const Vec3 expected = tip + course * kStepMm;
+    if (!field.contains(expected, 1)) break;
+    const Cut cut = cutAcross(field, expected, course, boneHu);
+    const bool isGood = cut.isFound && cut.areaMm2 < 2 * usual && distance(cut.centre, expected) < 2;
+    misses = isGood ? 0 : misses + 1;
+    if (misses > 12) break;
+    const Vec3 next = isGood ? lerp(expected, cut.centre, 0.5) : expected;
+    const double now = fromBody(next);
+    // Past the nearest point there is nothing more to find.
+    if (now > nearest + 1.5) break;
+    nearest = std::min(nearest, now);
+    back.line.push_back(next);
+  }
+  rib.reachesVertebra = nearest < kHeadMm + 12;
+  rib.line.assign(back.line.rbegin(), back.line.rend());
+  smoothLine(rib.line);
+  return rib;
+}
+
+}  // namespace pectora::thorax
