@@ -30,7 +30,7 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// Three rounds of the kernel (1, 2, 1) / 4; the ends stay.
+/// Four rounds of the kernel (1, 2, 1) / 4; the ends stay.
 void smoothLine(std::vector<Vec3>& line) {
   for (int round = 0; round < 4; ++round) {
     std::vector<Vec3> from = line;
@@ -38,18 +38,13 @@ void smoothLine(std::vector<Vec3>& line) {
   }
 }
 
-/// A line that grows at its end.
-struct Growth {
-  std::vector<Vec3> line;         ///< grows at its back
-  std::vector<double> area;       ///< of the cuts
-  Vec3 course() const {
-    const std::size_t n = line.size();
-    const Vec3 recent = normalized(line[n - 1] - line[n - std::min<std::size_t>(n, 6)]);
-    const Vec3 before = n > 12 ? normalized(line[n - 6] - line[n - 12]) : recent;
-    // Half of the turn of the last stretch is carried on.
-    return normalized(recent + (recent - before) * 0.5);
-  }
-};
+/// Direction in which a line's end goes on: that of its last 10 mm, with half of the turn since the 10 mm before.
+Vec3 courseOf(const std::vector<Vec3>& line) {
+  const std::size_t n = line.size();
+  const Vec3 recent = normalized(line[n - 1] - line[n - std::min<std::size_t>(n, 6)]);
+  const Vec3 before = n > 12 ? normalized(line[n - 6] - line[n - 12]) : recent;
+  return normalized(recent + (recent - before) * 0.5);
+}
 
 }  // namespace
 
@@ -90,29 +85,30 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   const double distrusted = std::min(kDistrustedEndMm, 0.25 * length);
   const auto skip = std::ptrdiff_t(distrusted / kStepMm);
   line = std::vector<Vec3>(line.begin() + skip, line.end() - skip);
-  Growth middle;
+  double usual = 0;
   for (int round = 0; round < 2; ++round) {
-    std::vector<Vec3> centred;
-    middle.area.clear();
+    std::vector<Cut> cuts;
+    std::vector<double> areas;
     for (std::size_t n = 0; n < line.size(); ++n) {
-      const Cut cut = cutAcross(field, line[n], directionAt(line, n), boneHu);
-      if (!cut.isFound) continue;
-      centred.push_back(cut.centre);
-      middle.area.push_back(cut.areaMm2);
+      cuts.push_back(cutAcross(field, line[n], directionAt(line, n), boneHu));
+      if (cuts.back().isFound) areas.push_back(cuts.back().areaMm2);
     }
-    if (centred.size() < 5) return rib;
-    const double span = polylineLength(centred);
-    line = resamplePolyline(centred, std::max(5, int(span / kStepMm)));
+    if (areas.size() < 5) return rib;
+    usual = median(areas);
+    // Where something else touches the rib, or only half of it was seen, the line goes straight on.
+    std::vector<Vec3> centred;
+    for (const Cut& cut : cuts)
+      if (cut.isFound && cut.areaMm2 < 1.7 * usual && cut.areaMm2 > 0.4 * usual) centred.push_back(cut.centre);
+    line = resamplePolyline(centred, std::max(5, int(polylineLength(centred) / kStepMm)));
     smoothLine(line);
   }
-  const double usual = median(middle.area);
 
   // Forwards to the end of the bone.
-  Growth front{line, {}};
+  std::vector<Vec3> front = line;
   int misses = 0;
   bool isAtBorder = false;
   for (int step = 0; step < 60; ++step) {
-    const Vec3 course = front.course(), expected = front.line.back() + course * kStepMm;
+    const Vec3 course = courseOf(front), expected = front.back() + course * kStepMm;
     if (!field.contains(expected, 2)) {
       isAtBorder = true;
       break;
@@ -121,22 +117,22 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && distance(cut.centre, expected) < 2.5;
     if (!isGood && ++misses == 3) break;
     if (isGood) misses = 0;
-    front.line.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
+    front.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
   }
-  front.line.resize(front.line.size() - std::size_t(std::min<int>(misses, 2)));
+  front.resize(front.size() - std::size_t(std::min<int>(misses, 2)));
   rib.reachesJunction = !isAtBorder;
 
   // Backwards to the side of the vertebral body.
-  Growth back{std::vector<Vec3>(front.line.rbegin(), front.line.rend()), {}};
+  std::vector<Vec3> back(front.rbegin(), front.rend());
   misses = 0;
   const auto fromBody = [&](Vec3 p) {
     const Vec3 c = spineAt(spine, p.z, sliceSpacing);
     return std::hypot(p.x - c.x, p.y - c.y);
   };
-  double nearest = fromBody(back.line.back());
+  double nearest = fromBody(back.back());
   for (int step = 0; step < 50 && nearest > kHeadMm; ++step) {
-    Vec3 course = back.course();
-    const Vec3 tip = back.line.back(), body = spineAt(spine, tip.z, sliceSpacing);
+    Vec3 course = courseOf(back);
+    const Vec3 tip = back.back(), body = spineAt(spine, tip.z, sliceSpacing);
     const double bend = misses > 0 ? 0.12 : 0.03;
     if (nearest < 60) course = normalized(course * (1 - bend) + normalized(body - tip) * bend);
     const Vec3 expected = tip + course * kStepMm;
@@ -150,10 +146,10 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     // Past the nearest point there is nothing more to find.
     if (now > nearest + 1.5) break;
     nearest = std::min(nearest, now);
-    back.line.push_back(next);
+    back.push_back(next);
   }
   rib.reachesVertebra = nearest < kHeadMm + 12;
-  rib.line.assign(back.line.rbegin(), back.line.rend());
+  rib.line.assign(back.rbegin(), back.rend());
   smoothLine(rib.line);
   return rib;
 }

@@ -11,7 +11,8 @@ namespace pectora::thorax {
 namespace {
 
 constexpr double kBorderMm = 9;           // nearer to the CT's upper or lower border than this counts as cut by it
-constexpr double kShoulderBladeMm = 14;
+constexpr double kShoulderBladeMm = 14;  // farther out than the rib below: not a rib
+constexpr double kInsideMm = 22;         // farther in than the rib above: not a rib
 
 double medianOf(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
@@ -33,6 +34,32 @@ double shareWithLungOutside(const Track& track, const Fan& fan, const Body& body
   return double(with) / double(track.items.size());
 }
 
+/// Cuts off the fragments of calcified cartilage that a track may have picked up beyond the end of the rib: from the
+/// track's middle forwards, it ends before five sections in a row below half the usual area, and before a gap of more
+/// than eight planes with less than 20 sections behind it.
+void trimFront(Track& track) {
+  std::vector<double> areas;
+  for (const Track::Item& item : track.items) areas.push_back(item.section.shape.area);
+  const double usual = medianOf(areas);
+  std::size_t small = 0;
+  for (std::size_t n = track.items.size() / 2; n < track.items.size(); ++n) {
+    const bool isGap = n > 0 && track.items[n - 1].plane - track.items[n].plane > 8 && track.items.size() - n < 20;
+    small = areas[n] < 0.5 * usual ? small + 1 : 0;
+    if (isGap || small == 5) {
+      track.items.resize(isGap ? n - small : n + 1 - small);
+      return;
+    }
+  }
+}
+
+/// Whether more than a third of a line lies within 6 mm of another.
+bool runsAlong(const std::vector<Vec3>& line, const std::vector<Vec3>& other) {
+  const auto near = std::count_if(line.begin(), line.end(), [&](Vec3 p) {
+    return std::any_of(other.begin(), other.end(), [&](Vec3 q) { return distance(p, q) < 6; });
+  });
+  return 3 * std::size_t(near) > line.size();
+}
+
 /// Median over common planes of how much farther out `a` lies than `b`; 0 if they share none.
 double farther(const Track& a, const Track& b) {
   std::vector<double> differences;
@@ -48,12 +75,20 @@ std::vector<Track> chooseRibs(std::vector<Track> tracks, const Fan& fan, const B
   const double bottom = body.firstSlice * body.spacing.z, top = body.lastSlice * body.spacing.z;
   std::vector<Track> ribs, fromTop;
   for (Track& track : tracks) {
-    if (shareWithLungOutside(track, fan, body) > 0.4) continue;
+    trimFront(track);
+    if (track.items.size() < 5 || shareWithLungOutside(track, fan, body) > 0.4) continue;
     const double first = track.items.front().section.shape.centroid.y, last = track.items.back().section.shape.centroid.y;
     const bool endsBelow = last < bottom + kBorderMm;
     if (track.backPlane() >= 140 && (track.frontPlane() <= 138 || (endsBelow && first > last))) ribs.push_back(std::move(track));
-    else if (first > top - kBorderMm && track.items.size() >= 20 && first > last + 10) fromTop.push_back(std::move(track));
+    else if (first > top - kBorderMm && track.items.size() >= 20 && first > last + 18) fromTop.push_back(std::move(track));
   }
+  // From above downwards: nothing lies far inside the rib above it (kidneys, bowel with contrast agent).
+  std::sort(ribs.begin(), ribs.end(), [](const Track& a, const Track& b) {
+    return a.items.front().section.shape.centroid.y > b.items.front().section.shape.centroid.y;
+  });
+  for (std::size_t n = 1; n < ribs.size();)
+    if (farther(ribs[n - 1], ribs[n]) > kInsideMm) ribs.erase(ribs.begin() + std::ptrdiff_t(n));
+    else ++n;
   // From below upwards, each against the next rib below it.
   std::sort(fromTop.begin(), fromTop.end(), [](const Track& a, const Track& b) { return a.backPlane() > b.backPlane(); });
   for (Track& track : fromTop) {
@@ -125,7 +160,7 @@ Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top) {
   if (!isCutAbove && top - levels.front().height >= std::max(12.0, std::min(gaps.front(), usual))) {
     counting = Counting::fromFirst;
     first = 1;
-  } else if (levels.back().height - bottom >= 1.3 * usual) {
+  } else if (levels.back().height - bottom >= 1.6 * std::max(usual, gaps.back())) {
     counting = Counting::fromLast;
     first = 13 - int(levels.size());
   } else {
@@ -167,8 +202,14 @@ std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine
       found[t].backHeight = rough.front().z;
       found[t].beginsAtTop = tracks[t].backPlane() < 140;
     });
+    // The longest first; what runs along a rib that is there already is its other cortex.
+    std::stable_sort(found.begin(), found.end(), [](const FoundRib& a, const FoundRib& b) {
+      return polylineLength(a.body.line) > polylineLength(b.body.line);
+    });
     for (FoundRib& rib : found)
-      if (polylineLength(rib.body.line) >= 20) ribs.push_back(std::move(rib));
+      if (polylineLength(rib.body.line) >= 20 &&
+          std::none_of(ribs.begin(), ribs.end(), [&](const FoundRib& r) { return runsAlong(rib.body.line, r.body.line); }))
+        ribs.push_back(std::move(rib));
   }
   switch (numberRibs(ribs, bottom, top)) {
     case Counting::fromFirst: break;

@@ -20,7 +20,8 @@ struct FoundRib {
 
 /// Which tracks are ribs: those that begin behind (plane 140 or more) and reach plane 138 or the CT's lower border, and
 /// those that begin at the CT's upper border; not those that have lung outside them, nor those that begin at the upper
-/// border and lie more than 14 mm outside the next rib below (scapula).
+/// border and lie more than 14 mm outside the next rib below (scapula), nor what lies 22 mm inside the rib above
+/// (organs with contrast agent). Fragments of calcified cartilage in front of a rib are cut off.
 std::vector<Track> chooseRibs(std::vector<Track> tracks, const Fan& fan, const Body& body);
 
 /// How the ribs were counted.
@@ -28,7 +29,7 @@ enum class Counting { fromFirst, fromLast, none };
 
 /// Pairs the sides by height and numbers the ribs. Counts down from 1 if the first rib is in view: none is cut by the
 /// upper border and the topmost begins below it by at least the distance to the next. Otherwise up from 12 if the last
-/// rib is in view: the lowest begins at least 1.3 rib distances above the lower border. Otherwise leaves all at 0.
+/// rib is in view: the lowest begins at least 1.6 rib distances above the lower border. Otherwise leaves all at 0.
 /// Ribs that the counting makes less than 1 or more than 12 keep 0. `bottom` and `top` are the CT's borders, local mm.
 Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top);
 

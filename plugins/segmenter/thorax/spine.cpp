@@ -2,6 +2,7 @@
 
 #include "kernel/physics/workers.h"
 #include "kernel/stage/error.h"
+#include "plugins/segmenter/thorax/column_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,30 +13,6 @@ namespace {
 
 constexpr double kGridMm = 2.8;        // positions of the centre that are tried
 constexpr double kLeastScore = 0.12;   // of the box, or there is no vertebra here
-
-/// How much like bone a value is, 0 to 1.
-float boneness(float hu) { return std::clamp((hu - 100) / 150, 0.0f, 1.0f); }
-
-/// Sums over rectangles of a plane in constant time.
-class Sums {
- public:
-  explicit Sums(const Plane& p) : w_(p.width + 1), h_(p.height + 1), sum_(std::size_t(w_) * h_, 0) {
-    for (int j = 1; j < h_; ++j)
-      for (int i = 1; i < w_; ++i)
-        sum_[j * w_ + i] = p.at(i - 1, j - 1) + sum_[(j - 1) * w_ + i] + sum_[j * w_ + i - 1] - sum_[(j - 1) * w_ + i - 1];
-  }
-  /// Mean over pixels [i0, i1) x [j0, j1), cut to the plane.
-  double mean(int i0, int i1, int j0, int j1) const {
-    i0 = std::clamp(i0, 0, w_ - 1), i1 = std::clamp(i1, 0, w_ - 1);
-    j0 = std::clamp(j0, 0, h_ - 1), j1 = std::clamp(j1, 0, h_ - 1);
-    if (i1 <= i0 || j1 <= j0) return 0;
-    return (sum_[j1 * w_ + i1] - sum_[j0 * w_ + i1] - sum_[j1 * w_ + i0] + sum_[j0 * w_ + i0]) / ((i1 - i0) * (j1 - j0));
-  }
-
- private:
-  int w_, h_;
-  std::vector<double> sum_;
-};
 
 double median(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + v.size() / 2, v.end());
@@ -89,48 +66,15 @@ Spine findSpine(const Body& body, const Field& field, double boneHu) {
     }
   });
 
-  // Mean over 16 mm of slices, so that discs do not break the column.
-  const int reach = std::max(0, int(8 / sz));
-  std::vector<float> smoothScore(score.size());
-  parallelFor(count, [&](std::size_t s) {
-    const int a = std::max(0, int(s) - reach), b = std::min(count - 1, int(s) + reach);
-    for (int c = 0; c < cells; ++c) {
-      double sum = 0;
-      for (int t = a; t <= b; ++t) sum += score[std::size_t(cells) * t + c];
-      smoothScore[cells * s + c] = float(sum / (b - a + 1));
-    }
-  });
-
-  // The best path from the lowest slice to the highest.
+  // The best path from the lowest slice to the highest; the mean over 16 mm of slices bridges the discs.
   const int side = std::max(1, int(std::ceil(sz / kGridMm)));
-  const float stepCost = float(0.04 * kGridMm * kGridMm / std::max(sz, 1.0) / kGridMm);
-  std::vector<float> best(smoothScore.begin(), smoothScore.begin() + cells);
-  std::vector<std::int32_t> came(std::size_t(cells) * count, 0);
-  for (int s = 1; s < count; ++s) {
-    std::vector<float> next(cells, -std::numeric_limits<float>::infinity());
-    for (int c = 0; c < cells; ++c) {
-      if (smoothScore[std::size_t(cells) * s + c] <= -0.9f && best[c] < -1e6f) continue;
-      const int i = c % nx, j = c / nx;
-      for (int dj = -side; dj <= side; ++dj)
-        for (int di = -side; di <= side; ++di) {
-          if (i + di < 0 || i + di >= nx || j + dj < 0 || j + dj >= ny) continue;
-          const int from = c + dj * nx + di;
-          const float value = best[from] - stepCost * float(di * di + dj * dj);
-          if (value > next[c]) next[c] = value, came[std::size_t(cells) * s + c] = from;
-        }
-      next[c] += smoothScore[std::size_t(cells) * s + c];
-    }
-    best.swap(next);
-  }
-  std::vector<int> path(count);
-  path[count - 1] = int(std::max_element(best.begin(), best.end()) - best.begin());
-  for (int s = count - 1; s > 0; --s) path[s - 1] = came[std::size_t(cells) * s + path[s]];
+  const ColumnPath path = bestColumn(score, nx, ny, count, int(8 / sz), side, float(0.04 * kGridMm / std::max(sz, 1.0)));
 
   // Where the score holds up, the column was seen.
   Spine spine;
   spine.firstSlice = -1;
   for (int s = 0; s < count; ++s)
-    if (smoothScore[std::size_t(cells) * s + path[s]] > kLeastScore) {
+    if (path.score[s] > kLeastScore) {
       if (spine.firstSlice < 0) spine.firstSlice = first + s;
       spine.lastSlice = first + s;
     }
@@ -145,7 +89,7 @@ Spine findSpine(const Body& body, const Field& field, double boneHu) {
   for (int k = 0; k < slices; ++k) {
     Vec3 sum{};
     for (int t = -window; t <= window; ++t) {
-      const int c = path[clampSlice(k + t) - first];
+      const int c = path.cell[clampSlice(k + t) - first];
       sum += body.position((c % nx + 0.5) * px - 0.5, (c / nx + 0.5) * py - 0.5, 0);
     }
     spine.centre[k] = sum / (2.0 * window + 1);
