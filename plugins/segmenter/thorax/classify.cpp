@@ -1,0 +1,78 @@
+#include "plugins/segmenter/thorax/segment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora::thorax {
+namespace {
+
+constexpr double kLeastAreaMm2 = 8;
+constexpr double kVertebraMm = 45;
+constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35 for an ellipse of 4 : 1
+
+}  // namespace
+
+LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebra, const std::vector<Point2>& wall) {
+  LevelMetrics level;
+  level.z = z;
+  double least = 1e300, greatest = -1e300, front = 1e300;
+  for (const Point2& p : wall) {
+    least = std::min(least, p.x), greatest = std::max(greatest, p.x);
+    if (p.y < vertebra.y) front = std::min(front, p.y);
+  }
+  if (!wall.empty()) level.transverse = greatest - least;
+  if (front < vertebra.y) level.deepestInnerWall = vertebra.y - front;
+  double shortest = 1e300;
+  for (std::size_t n = 0; n < sternum.size(); ++n) {
+    const Point2 a = sternum[n], b = sternum[(n + 1) % sternum.size()], d{b.x - a.x, b.y - a.y};
+    const double length = d.x * d.x + d.y * d.y;
+    const double t = length > 0 ? std::clamp(((vertebra.x - a.x) * d.x + (vertebra.y - a.y) * d.y) / length, 0.0, 1.0) : 0;
+    shortest = std::min(shortest, std::hypot(a.x + t * d.x - vertebra.x, a.y + t * d.y - vertebra.y));
+  }
+  if (!sternum.empty()) level.sternumToVertebra = shortest;
+  return level;
+}
+
+std::vector<SliceContour> classifyBones(const Field& field, int slice, double boneHu, const std::vector<FoundRib>& ribs,
+                                        const std::vector<SternumSlice>& sternum, const Spine& spine) {
+  const Box& box = field.box();
+  const Vec3 spacing = field.spacing();
+  Plane plane(box.size(0), box.size(1));
+  for (int j = 0; j < plane.height; ++j)
+    for (int i = 0; i < plane.width; ++i) plane.at(i, j) = field.voxel(i + box.low[0], j + box.low[1], slice);
+  const double z = slice * spacing.z, reach = std::max(1.5, 0.6 * spacing.z);
+  const SternumSlice* breastbone = nullptr;
+  for (const SternumSlice& s : sternum)
+    if (s.slice == slice && s.isSeen) breastbone = &s;
+
+  std::vector<SliceContour> result;
+  for (Loop& loop : isoContours(plane, float(boneHu))) {
+    for (Point2& p : loop) p = {(p.x + box.low[0]) * spacing.x, (p.y + box.low[1]) * spacing.y};
+    const Shape shape = shapeOf(loop);
+    if (shape.area < kLeastAreaMm2) continue;
+    SliceContour contour;
+    contour.slice = slice;
+    const Point2 c = shape.centroid;
+    for (const Point2& p : loop) contour.points.push_back({p.x, p.y, z});
+
+    const double fromColumn = std::hypot(c.x - spine.centre[slice].x, c.y - spine.centre[slice].y);
+    if (breastbone && isInside(breastbone->contour, c)) contour.structure = "sternum";
+    if (contour.structure.empty() && isInside(loop, {spine.centre[slice].x, spine.centre[slice].y}))
+      contour.structure = "vertebra";
+    for (std::size_t r = 0; r < ribs.size() && contour.structure.empty(); ++r)
+      for (const Vec3& p : ribs[r].body.line)
+        if (std::abs(p.z - z) < reach && isInside(loop, {p.x, p.y})) {
+          contour.structure = "rib";
+          contour.number = ribs[r].number;
+          contour.side = ribs[r].side;
+          break;
+        }
+    if (contour.structure.empty() && fromColumn < kVertebraMm && c.y > spine.front[slice].y) contour.structure = "vertebra";
+    if (contour.structure.empty())
+      contour.structure = shape.hu[0] > kBladeHu1 && shape.area > 60 && c.y > spine.front[slice].y - 40 ? "scapula" : "other";
+    result.push_back(std::move(contour));
+  }
+  return result;
+}
+
+}  // namespace pectora::thorax
