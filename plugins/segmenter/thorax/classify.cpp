@@ -7,7 +7,8 @@ namespace pectora::thorax {
 namespace {
 
 constexpr double kLeastAreaMm2 = 8;
-constexpr double kVertebraMm = 45;
+constexpr double kVertebraMm = 45;   // from the column's middle
+constexpr double kNeckMm = 30;       // nearer to the column a rib is part of the vertebra's contour
 constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35 for an ellipse of 4 : 1
 
 }  // namespace
@@ -61,7 +62,8 @@ std::vector<SliceContour> classifyBones(const Field& field, int slice, double bo
       contour.structure = "vertebra";
     for (std::size_t r = 0; r < ribs.size() && contour.structure.empty(); ++r)
       for (const Vec3& p : ribs[r].body.line)
-        if (std::abs(p.z - z) < reach && isInside(loop, {p.x, p.y})) {
+        if (std::abs(p.z - z) < reach && isInside(loop, {p.x, p.y}) &&
+            std::hypot(p.x - spine.centre[slice].x, p.y - spine.centre[slice].y) > kNeckMm) {
           contour.structure = "rib";
           contour.number = ribs[r].number;
           contour.side = ribs[r].side;

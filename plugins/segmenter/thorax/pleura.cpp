@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kRayStepMm = 0.7;
+constexpr double kNeckMm = 45;        // of a rib, from the vertebra to where it joins the wall
 constexpr double kBonyStiffness = 0.5, kStiffness = 0.02;
 constexpr double kBoneWeight = 0.1;   // of a bony sample beside a sample of lung
 
@@ -92,6 +93,7 @@ std::vector<WallSample> bonyWall(const std::vector<FoundRib>& ribs, const std::v
       const int k = std::clamp(int(std::lround(slice)), 0, int(grid.poleX.size()) - 1);
       const auto [index, r] = polarOf(grid, k, {p.x, p.y});
       if (index < 0 || index > PolarGrid::kAngles - 1) continue;
+      if (rib.body.reachesVertebra && distance(p, rib.body.line.front()) < kNeckMm) continue;
       // Inwards from the centreline to where the bone ends.
       const double angle = (index - PolarGrid::kAngles / 2) * PolarGrid::kStepDeg;
       float before = field.at(p);
@@ -144,24 +146,26 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
       for (int n = 0; n < angles; ++n)
         if (outside[s][n] > 0) reference.push_back({double(n), double(firstSlice + s), 0.75 * outside[s][n], 1});
   if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
-  const std::vector<double> first = fitWall(reference, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
-  if (step) step(0.6);
-
-  std::vector<WallSample> samples;
-  std::vector<char> hasLung(std::size_t(slices) * angles, 0);
-  for (const WallSample& sample : all) {
-    const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
-    if (sample.radius < first[at] - settings.deepestMm) continue;
-    samples.push_back(sample);
-    hasLung[at] = 1;
+  const UsualWall usual = usualWall(reference, outside, firstSlice, body.spacing.z);
+  std::vector<double> radius = fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
+  for (int round = 0; round < 3; ++round) {
+    if (step) step(0.4 + 0.15 * round);
+    std::vector<WallSample> samples;
+    std::vector<char> hasLung(std::size_t(slices) * angles, 0);
+    for (const WallSample& sample : all) {
+      const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
+      if (sample.radius < radius[at] - settings.deepestMm) continue;
+      samples.push_back(sample);
+      hasLung[at] = 1;
+    }
+    for (WallSample sample : bony) {
+      const int s = std::clamp(int(std::lround(sample.slice)) - firstSlice, 0, slices - 1);
+      if (hasLung[std::size_t(s) * angles + std::size_t(std::lround(sample.angleIndex))]) sample.weight = kBoneWeight;
+      samples.push_back(sample);
+    }
+    if (samples.empty()) break;
+    radius = fitWall(samples, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kStiffness);
   }
-  for (WallSample sample : bony) {
-    const int s = std::clamp(int(std::lround(sample.slice)) - firstSlice, 0, slices - 1);
-    if (hasLung[std::size_t(s) * angles + std::size_t(std::lround(sample.angleIndex))]) sample.weight = kBoneWeight;
-    samples.push_back(sample);
-  }
-  if (samples.empty()) samples = reference;
-  std::vector<double> radius = fitWall(samples, firstSlice, firstSlice + slices - 1, body.spacing.z, kStiffness);
   if (step) step(0.9);
 
   // Never nearer to the skin than the least thickness.

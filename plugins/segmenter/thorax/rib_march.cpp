@@ -11,7 +11,8 @@ namespace {
 constexpr double kStepMm = 2;
 constexpr double kWindowMm = 12, kPixelMm = 0.6;
 constexpr double kHeadMm = 20;             // from the vertebra's middle to where the centreline ends
-constexpr double kDistrustedEndMm = 16;    // of the rough line, at either end
+constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rough line
+constexpr int kLongestMergeMm = 30;
 
 Vec3 spineAt(const Spine& spine, double z, double sliceSpacing) {
   const double k = std::clamp(z / sliceSpacing, 0.0, double(spine.centre.size() - 1));
@@ -65,12 +66,17 @@ Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
   for (const Loop& loop : isoContours(plane, float(boneHu))) {
     const Shape shape = shapeOf(loop);
     const double area = shape.area * kPixelMm * kPixelMm;
-    if (area < 12 || area > 300 || shape.spreadMajor * kPixelMm > 7.5) continue;
+    const bool isAround = isInside(loop, {double(half), double(half)});
+    if (area > 300 || shape.spreadMajor * kPixelMm > 7.5) {
+      cut.isMerged = cut.isMerged || isAround;
+      continue;
+    }
+    if (area < 12) continue;
     const double x = (shape.centroid.x - half) * kPixelMm, y = (shape.centroid.y - half) * kPixelMm;
-    const double distance = isInside(loop, {double(half), double(half)}) ? 0.01 * std::hypot(x, y) : std::hypot(x, y);
+    const double distance = isAround ? 0.01 * std::hypot(x, y) : std::hypot(x, y);
     if (distance >= nearest) continue;
     nearest = distance;
-    cut = {true, p + e1 * x + e2 * y, area};
+    cut = {true, false, p + e1 * x + e2 * y, area};
   }
   return cut;
 }
@@ -82,9 +88,9 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   std::vector<Vec3> line = resamplePolyline(rough, std::max(5, int(length / kStepMm)));
   smoothLine(line);
   // The inner part of the rough line, twice centred on its cuts.
-  const double distrusted = std::min(kDistrustedEndMm, 0.25 * length);
-  const auto skip = std::ptrdiff_t(distrusted / kStepMm);
-  line = std::vector<Vec3>(line.begin() + skip, line.end() - skip);
+  const auto skipBack = std::ptrdiff_t(std::min(kDistrustedBackMm, 0.2 * length) / kStepMm);
+  const auto skipFront = std::ptrdiff_t(std::min(kDistrustedFrontMm, 0.25 * length) / kStepMm);
+  line = std::vector<Vec3>(line.begin() + skipBack, line.end() - skipFront);
   double usual = 0;
   for (int round = 0; round < 2; ++round) {
     std::vector<Cut> cuts;
@@ -105,7 +111,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
 
   // Forwards to the end of the bone.
   std::vector<Vec3> front = line;
-  int misses = 0;
+  int misses = 0, unsure = 0;   // steps without bone; steps since the last good one
   bool isAtBorder = false;
   for (int step = 0; step < 60; ++step) {
     const Vec3 course = courseOf(front), expected = front.back() + course * kStepMm;
@@ -114,12 +120,15 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
       break;
     }
     const Cut cut = cutAcross(field, expected, course, boneHu);
-    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && distance(cut.centre, expected) < 2.5;
-    if (!isGood && ++misses == 3) break;
+    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual &&
+                        distance(cut.centre, expected) < (unsure > 2 ? 1.5 : 2.5);
+    if (!isGood && !cut.isMerged && ++misses == 3) break;
+    if (!isGood && unsure >= kLongestMergeMm / kStepMm) break;
+    unsure = isGood ? 0 : unsure + 1;
     if (isGood) misses = 0;
     front.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
   }
-  front.resize(front.size() - std::size_t(std::min<int>(misses, 2)));
+  front.resize(front.size() - std::size_t(unsure));
   rib.reachesJunction = !isAtBorder;
 
   // Backwards to the side of the vertebral body.

@@ -9,30 +9,62 @@ namespace pectora::thorax {
 namespace {
 
 constexpr double kRowMm = 2.5;
-constexpr double kPull = 1e-4;      // towards each angle's median
+constexpr double kNearMm = 40, kNearPull = 1e-5, kFarPull = 1e-3;
 
-double medianOf(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-  return v[v.size() / 2];
+double quantileOf(std::vector<double>& v, double part) {
+  const auto at = v.begin() + std::ptrdiff_t(part * double(v.size() - 1));
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
 }
 
 }  // namespace
 
-std::vector<double> fitWall(const std::vector<WallSample>& samples, int firstSlice, int lastSlice, double sliceSpacing,
-                            double stiffness) {
+UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<std::vector<double>>& skinRadius,
+                    int firstSlice, double sliceSpacing) {
+  constexpr int angles = PolarGrid::kAngles;
+  const int slices = int(skinRadius.size());
+  // Radii and depths below the skin that occur within 6 degrees of each angle.
+  std::vector<double> radius(angles, -1), depth(angles, -1);
+  std::vector<std::vector<double>> radii(angles), depths(angles);
+  std::vector<std::vector<char>> isKnown(angles, std::vector<char>(slices, 0));
+  for (const WallSample& s : samples) {
+    const int n = std::clamp(int(std::lround(s.angleIndex)), 0, angles - 1);
+    const int row = std::clamp(int(std::lround(s.slice)) - firstSlice, 0, slices - 1);
+    for (int m = std::max(0, n - 4); m <= std::min(angles - 1, n + 4); ++m) {
+      isKnown[m][row] = 1;
+      radii[m].push_back(s.radius);
+      if (skinRadius[row][n] > s.radius) depths[m].push_back(skinRadius[row][n] - s.radius);
+    }
+  }
+  for (int n = 0; n < angles; ++n)
+    for (int d = 0; d < angles && radius[n] < 0; ++d)
+      for (int m : {n - d, n + d})
+        if (m >= 0 && m < angles && radius[n] < 0 && !radii[m].empty() && !depths[m].empty())
+          radius[n] = quantileOf(radii[m], 0.5), depth[n] = quantileOf(depths[m], 0.25);
+  UsualWall usual;
+  usual.radius.resize(std::size_t(slices) * angles);
+  usual.weight.assign(usual.radius.size(), kFarPull);
+  for (int s = 0; s < slices; ++s)
+    for (int n = 0; n < angles; ++n) {
+      // In front the wall follows the skin; at the sides there may be arms, and it stays in.
+      const bool isFront = std::abs(PolarGrid::degrees(n)) <= 60;
+      const double below = skinRadius[s][n] > 0 ? skinRadius[s][n] - depth[n] : radius[n];
+      usual.radius[std::size_t(s) * angles + n] = std::max(1.0, isFront ? below : std::min(radius[n], below));
+    }
+  const int reach = int(kNearMm / sliceSpacing);
+  for (int n = 0; n < angles; ++n)
+    for (int s = 0; s < slices; ++s)
+      for (int t = isKnown[n][s] ? std::max(0, s - reach) : slices; t <= std::min(slices - 1, s + reach); ++t)
+        usual.weight[std::size_t(t) * angles + n] = kNearPull;
+  return usual;
+}
+
+std::vector<double> fitWall(const std::vector<WallSample>& samples, const UsualWall& usual, int firstSlice,
+                            int lastSlice, double sliceSpacing, double stiffness) {
   constexpr int angles = PolarGrid::kAngles;
   const int slices = lastSlice - firstSlice + 1;
   const int stride = std::max(1, int(kRowMm / sliceSpacing)), rows = (slices - 1 + stride - 1) / stride + 1;
   const int unknowns = rows * angles;
-
-  // What each angle's median is; angles without samples take the nearest one's.
-  std::vector<std::vector<double>> perAngle(angles);
-  for (const WallSample& s : samples) perAngle[std::clamp(int(std::lround(s.angleIndex)), 0, angles - 1)].push_back(s.radius);
-  std::vector<double> usual(angles, -1);
-  for (int n = 0; n < angles; ++n)
-    for (int d = 0; d < angles && usual[n] < 0; ++d)
-      for (int m : {n - d, n + d})
-        if (m >= 0 && m < angles && !perAngle[m].empty() && usual[n] < 0) usual[n] = medianOf(perAngle[m]);
 
   // Normal equations: samples (bilinear), thin plate, pull.
   std::vector<Eigen::Triplet<double>> entries;
@@ -73,7 +105,8 @@ std::vector<double> fitWall(const std::vector<WallSample>& samples, int firstSli
         add(at, weight, 4, 2 * stiffness, 0);
       }
       const double one = 1;
-      add(&n, &one, 1, kPull, usual[i]);
+      const std::size_t at = std::size_t(std::min(j * stride, slices - 1)) * angles + i;
+      add(&n, &one, 1, usual.weight[at], usual.radius[at]);
     }
   Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
   matrix.setFromTriplets(entries.begin(), entries.end());
