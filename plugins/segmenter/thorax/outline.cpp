@@ -113,7 +113,7 @@ Shape shapeOf(const Loop& loop) {
     }
   }
   shape.area = m[0][0];
-  if (shape.area == 0) return shape;
+  if (std::abs(shape.area) < 1e-12) return {};
   const double cx = m[1][0] / m[0][0], cy = m[0][1] / m[0][0];
   shape.centroid = {base.x + cx, base.y + cy};
 
