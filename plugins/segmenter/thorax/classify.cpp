@@ -13,7 +13,7 @@ constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35
 
 }  // namespace
 
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebra, const std::vector<Point2>& wall) {
+LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebra, Vec3 centre, const std::vector<Point2>& wall) {
   LevelMetrics level;
   level.z = z;
   double least = 1e300, greatest = -1e300, front = 1e300;
@@ -27,10 +27,11 @@ LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebra, const st
   for (std::size_t n = 0; n < sternum.size(); ++n) {
     const Point2 a = sternum[n], b = sternum[(n + 1) % sternum.size()], d{b.x - a.x, b.y - a.y};
     const double length = d.x * d.x + d.y * d.y;
-    const double t = length > 0 ? std::clamp(((vertebra.x - a.x) * d.x + (vertebra.y - a.y) * d.y) / length, 0.0, 1.0) : 0;
-    shortest = std::min(shortest, std::hypot(a.x + t * d.x - vertebra.x, a.y + t * d.y - vertebra.y));
+    const double t = length > 0 ? std::clamp(((centre.x - a.x) * d.x + (centre.y - a.y) * d.y) / length, 0.0, 1.0) : 0;
+    shortest = std::min(shortest, std::hypot(a.x + t * d.x - centre.x, a.y + t * d.y - centre.y));
   }
-  if (!sternum.empty()) level.sternumToVertebra = shortest;
+  const double radius = std::hypot(vertebra.x - centre.x, vertebra.y - centre.y);
+  if (!sternum.empty() && shortest > radius) level.sternumToVertebra = shortest - radius;
   return level;
 }
 

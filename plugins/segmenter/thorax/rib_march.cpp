@@ -13,6 +13,7 @@ constexpr double kWindowMm = 12, kPixelMm = 0.6;
 constexpr double kHeadMm = 20;             // from the vertebra's middle to where the centreline ends
 constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rough line
 constexpr int kLongestMergeMm = 30;
+constexpr double kHighestSplit = 3;
 
 Vec3 spineAt(const Spine& spine, double z, double sliceSpacing) {
   const double k = std::clamp(z / sliceSpacing, 0.0, double(spine.centre.size() - 1));
@@ -61,23 +62,33 @@ Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
       const Vec3 at = p + e1 * ((i - half) * kPixelMm) + e2 * ((j - half) * kPixelMm);
       plane.at(i, j) = field.contains(at) ? field.at(at) : -1024.0f;
     }
+  // Where the contour around p is too large, a higher level may part what touches.
   Cut cut;
-  double nearest = 5;
-  for (const Loop& loop : isoContours(plane, float(boneHu))) {
-    const Shape shape = shapeOf(loop);
-    const double area = shape.area * kPixelMm * kPixelMm;
-    const bool isAround = isInside(loop, {double(half), double(half)});
-    if (area > 300 || shape.spreadMajor * kPixelMm > 7.5) {
-      cut.isMerged = cut.isMerged || isAround;
-      continue;
+  bool wasMerged = false;
+  for (double level = boneHu; level <= kHighestSplit * boneHu; level *= 1.4) {
+    cut = {};
+    double nearest = 5;
+    for (const Loop& loop : isoContours(plane, float(level))) {
+      const Shape shape = shapeOf(loop);
+      const double area = shape.area * kPixelMm * kPixelMm;
+      const bool isAround = isInside(loop, {double(half), double(half)});
+      if (area > 300 || shape.spreadMajor * kPixelMm > 7.5) {
+        cut.isMerged = cut.isMerged || isAround;
+        continue;
+      }
+      if (area < (wasMerged ? 20 : 12)) continue;
+      const double x = (shape.centroid.x - half) * kPixelMm, y = (shape.centroid.y - half) * kPixelMm;
+      const double distance = isAround ? 0.01 * std::hypot(x, y) : std::hypot(x, y);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      cut.isFound = true;
+      cut.centre = p + e1 * x + e2 * y;
+      cut.areaMm2 = area;
     }
-    if (area < 12) continue;
-    const double x = (shape.centroid.x - half) * kPixelMm, y = (shape.centroid.y - half) * kPixelMm;
-    const double distance = isAround ? 0.01 * std::hypot(x, y) : std::hypot(x, y);
-    if (distance >= nearest) continue;
-    nearest = distance;
-    cut = {true, false, p + e1 * x + e2 * y, area};
+    if (cut.isFound || !cut.isMerged) break;
+    wasMerged = true;
   }
+  cut.isMerged = !cut.isFound && (cut.isMerged || wasMerged);
   return cut;
 }
 
@@ -147,7 +158,8 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     const Vec3 expected = tip + course * kStepMm;
     if (!field.contains(expected, 1)) break;
     const Cut cut = cutAcross(field, expected, course, boneHu);
-    const bool isGood = cut.isFound && cut.areaMm2 < 2 * usual && distance(cut.centre, expected) < 2;
+    const bool isGood = cut.isFound && cut.areaMm2 < 2 * usual && cut.areaMm2 > 0.4 * usual &&
+                        distance(cut.centre, expected) < 1.5;
     misses = isGood ? 0 : misses + 1;
     if (misses > 12) break;
     const Vec3 next = isGood ? lerp(expected, cut.centre, 0.5) : expected;

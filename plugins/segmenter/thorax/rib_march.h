@@ -15,7 +15,8 @@ struct Cut {
 };
 
 /// Cuts the bone by the plane through `p` normal to `direction`: of the outer contours at `boneHu` within 12 mm the one
-/// around p, or else the nearest within 5 mm. Not found if its area is outside 12 to 300 mm^2 or it is longer than a rib.
+/// around p, or else the nearest within 5 mm. If p lies in a contour too large for a rib, higher levels up to 3 times
+/// boneHu are tried. Not found if its area is outside 12 to 300 mm^2 or it is longer than a rib.
 Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu);
 
 /// A centreline with the section area at every point.

@@ -42,7 +42,8 @@ struct SectionLimits {
   double mostSpreadMm = 9.5;    ///< of the longer axis (standard deviation): a scapula's blade is longer
 };
 
-/// The sections of every plane from kFirst to kLast; sections[n - kFirst] for plane n.
+/// The sections of every plane from kFirst to kLast; sections[n - kFirst] for plane n. A long contour that comes apart at
+/// a higher level (up to 3.5 times boneHu) into parts one above the other counts as those parts: ribs that touch.
 std::vector<std::vector<Section>> findSections(const Fan& fan, const Field& field, const SectionLimits& limits);
 
 }  // namespace pectora::thorax

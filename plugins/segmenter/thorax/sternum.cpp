@@ -10,7 +10,7 @@ namespace pectora::thorax {
 namespace {
 
 constexpr double kGridMm = 2.8;
-constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 14;   // windows around the path
+constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   // windows around the path
 constexpr double kManubriumPart = 0.33;    // of the run's length
 constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
 constexpr double kLeastScore = 0.1;
@@ -79,7 +79,7 @@ SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double ha
   for (const Loop& loop : isoContours(plane, float(boneHu))) {
     const Shape shape = shapeOf(loop);
     const double area = shape.area * kPixel * kPixel, y = (shape.centroid.y - hy) * kPixel;
-    if (area < 12 || std::abs(y) > 10) continue;
+    if (area < 12 || std::abs(y) > 12) continue;
     const auto [low, high] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
     // Fragments that do not come within 18 mm of the middle are calcified cartilage.
     if ((low->x - hx) * kPixel > 18 || (high->x - hx) * kPixel < -18) continue;

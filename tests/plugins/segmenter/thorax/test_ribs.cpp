@@ -47,15 +47,17 @@ Spine straightSpine(int slices, double sliceSpacing) {
 
 double rmsTo(const std::vector<Vec3>& line, double& from, double& to) {
   double sum = 0;
+  std::size_t count = 0;
   from = 180, to = 0;
   for (const Vec3& p : line) {
     double nearest = 1e9, at = 0;
     for (double d = 20; d <= 170; d += 0.25)
       if (distance(p, ringPoint(d)) < nearest) nearest = distance(p, ringPoint(d)), at = d;
-    sum += nearest * nearest;
+    // Beyond the ends there is no axis to compare with.
+    if (at > 20 && at < 170) sum += nearest * nearest, ++count;
     from = std::min(from, at), to = std::max(to, at);
   }
-  return std::sqrt(sum / double(line.size()));
+  return std::sqrt(sum / double(count));
 }
 
 class RibOfARing : public testing::TestWithParam<double> {};
