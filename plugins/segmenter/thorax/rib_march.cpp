@@ -12,6 +12,8 @@ constexpr double kStepMm = 2;
 constexpr double kWindowMm = 12, kPixelMm = 0.6;
 constexpr double kHeadMm = 20;             // from the vertebra's middle to where the centreline ends
 constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rough line
+constexpr double kFarthestOffMm = 2.5;     // of a cut's centre from the rough line
+constexpr double kNeckMm = 24;
 constexpr int kLongestMergeMm = 30;
 constexpr double kHighestSplit = 3;
 
@@ -112,10 +114,16 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     }
     if (areas.size() < 5) return rib;
     usual = median(areas);
-    // Where something else touches the rib, or only half of it was seen, the line goes straight on.
+    // Where something else touches the rib, or only half of it was seen, the line goes straight on; beside the transverse
+    // process the rough line is the better guess.
     std::vector<Vec3> centred;
-    for (const Cut& cut : cuts)
-      if (cut.isFound && cut.areaMm2 < 1.7 * usual && cut.areaMm2 > 0.4 * usual) centred.push_back(cut.centre);
+    for (std::size_t n = 0; n < line.size(); ++n)
+      if (cuts[n].isFound && cuts[n].areaMm2 < 1.7 * usual && cuts[n].areaMm2 > 0.4 * usual &&
+          distance(cuts[n].centre, line[n]) < kFarthestOffMm)
+        centred.push_back(cuts[n].centre);
+      else if (n * kStepMm < kNeckMm)
+        centred.push_back(line[n]);
+    if (centred.size() < 5) return rib;
     line = resamplePolyline(centred, std::max(5, int(polylineLength(centred) / kStepMm)));
     smoothLine(line);
   }
