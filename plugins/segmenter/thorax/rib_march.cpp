@@ -14,6 +14,7 @@ constexpr double kHeadMm = 20;             // from the vertebra's middle to wher
 constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rough line
 constexpr double kFarthestOffMm = 2.5;     // of a cut's centre from the rough line
 constexpr double kNeckMm = 24;
+constexpr double kSharpTurn = 0.8;          // cosine of 37 degrees
 constexpr int kLongestMergeMm = 30;
 constexpr double kHighestSplit = 3;
 
@@ -21,6 +22,13 @@ Vec3 spineAt(const Spine& spine, double z, double sliceSpacing) {
   const double k = std::clamp(z / sliceSpacing, 0.0, double(spine.centre.size() - 1));
   const std::size_t low = std::size_t(k), high = std::min(low + 1, spine.centre.size() - 1);
   return lerp(spine.centre[low], spine.centre[high], k - double(low));
+}
+
+/// Distance to the nearest point of a line.
+double distanceTo(const std::vector<Vec3>& line, Vec3 p) {
+  double nearest = 1e300;
+  for (const Vec3& q : line) nearest = std::min(nearest, distance(p, q));
+  return nearest;
 }
 
 /// Direction of a line at one of its points, over a few neighbours.
@@ -104,6 +112,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   const auto skipBack = std::ptrdiff_t(std::min(kDistrustedBackMm, 0.2 * length) / kStepMm);
   const auto skipFront = std::ptrdiff_t(std::min(kDistrustedFrontMm, 0.25 * length) / kStepMm);
   line = std::vector<Vec3>(line.begin() + skipBack, line.end() - skipFront);
+  const std::vector<Vec3> original = line;
   double usual = 0;
   for (int round = 0; round < 2; ++round) {
     std::vector<Cut> cuts;
@@ -119,7 +128,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     std::vector<Vec3> centred;
     for (std::size_t n = 0; n < line.size(); ++n)
       if (cuts[n].isFound && cuts[n].areaMm2 < 1.7 * usual && cuts[n].areaMm2 > 0.4 * usual &&
-          distance(cuts[n].centre, line[n]) < kFarthestOffMm)
+          distanceTo(original, cuts[n].centre) < kFarthestOffMm)
         centred.push_back(cuts[n].centre);
       else if (n * kStepMm < kNeckMm)
         centred.push_back(line[n]);
@@ -132,6 +141,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   std::vector<Vec3> front = line;
   int misses = 0, unsure = 0;   // steps without bone; steps since the last good one
   bool isAtBorder = false;
+  const Vec3 heading = courseOf(front);
   for (int step = 0; step < 60; ++step) {
     const Vec3 course = courseOf(front), expected = front.back() + course * kStepMm;
     if (!field.contains(expected, 2)) {
@@ -139,7 +149,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
       break;
     }
     const Cut cut = cutAcross(field, expected, course, boneHu);
-    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual &&
+    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && dot(course, heading) > kSharpTurn &&
                         distance(cut.centre, expected) < (unsure > 2 ? 1.5 : 2.5);
     if (!isGood && !cut.isMerged && ++misses == 3) break;
     if (!isGood && unsure >= kLongestMergeMm / kStepMm) break;
