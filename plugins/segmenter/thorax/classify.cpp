@@ -13,25 +13,15 @@ constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35
 
 }  // namespace
 
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebra, Vec3 centre, const std::vector<Point2>& wall) {
+LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall) {
   LevelMetrics level;
   level.z = z;
-  double least = 1e300, greatest = -1e300, front = 1e300;
-  for (const Point2& p : wall) {
-    least = std::min(least, p.x), greatest = std::max(greatest, p.x);
-    if (p.y < vertebra.y) front = std::min(front, p.y);
-  }
-  if (!wall.empty()) level.transverse = greatest - least;
-  if (front < vertebra.y) level.deepestInnerWall = vertebra.y - front;
-  double shortest = 1e300;
-  for (std::size_t n = 0; n < sternum.size(); ++n) {
-    const Point2 a = sternum[n], b = sternum[(n + 1) % sternum.size()], d{b.x - a.x, b.y - a.y};
-    const double length = d.x * d.x + d.y * d.y;
-    const double t = length > 0 ? std::clamp(((centre.x - a.x) * d.x + (centre.y - a.y) * d.y) / length, 0.0, 1.0) : 0;
-    shortest = std::min(shortest, std::hypot(a.x + t * d.x - centre.x, a.y + t * d.y - centre.y));
-  }
-  const double radius = std::hypot(vertebra.x - centre.x, vertebra.y - centre.y);
-  if (!sternum.empty() && shortest > radius) level.sternumToVertebra = shortest - radius;
+  double least = 1e300, greatest = -1e300, front = 1e300, back = -1e300;
+  for (const Point2& p : innerWall) least = std::min(least, p.x), greatest = std::max(greatest, p.x), front = std::min(front, p.y);
+  for (const Point2& p : sternum) back = std::max(back, p.y);
+  if (!innerWall.empty()) level.transverse = greatest - least;
+  if (!innerWall.empty() && front < vertebralFront.y) level.deepestInnerWall = vertebralFront.y - front;
+  if (!sternum.empty() && back < vertebralFront.y) level.sternumToVertebra = vertebralFront.y - back;
   return level;
 }
 

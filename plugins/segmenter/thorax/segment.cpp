@@ -146,7 +146,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
 
     const auto here = std::find_if(sternum.begin(), sternum.end(), [&](const SternumSlice& x) { return x.slice == k; });
     if (here == sternum.end()) continue;
-    LevelMetrics metrics = measureLevel(level, here->contour, front, spine.centre[k], wallOf(polar, wall, k, s, 120));
+    LevelMetrics metrics = measureLevel(level, here->contour, front, wallOf(polar, wall, k, s, 120));
     if (metrics.transverse > 0 && metrics.sternumToVertebra > 0 && metrics.deepestInnerWall > 0)
       anatomy->metrics.push_back(metrics);
   }

@@ -19,11 +19,10 @@ struct Settings {
 /// what else was not found is left out of the result and reported through host.warn.
 std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> ct, const Settings& settings, Host& host);
 
-/// T, B and C of one level from the sternum's contour there (may be empty), the vertebral body (the disc about its middle
-/// through its front) and the inner wall, all local mm: T is the inner width, B the shortest way from the sternum to the
-/// vertebral body, C the depth from the body's front to the most anterior inner wall. Zero where it is not known.
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, Vec3 vertebralCentre,
-                          const std::vector<Point2>& innerWall);
+/// T, B and C of one level from the sternum's contour there (may be empty), the front of the vertebral body and the inner
+/// wall, all local mm: T is the inner width; B and C are depths along y, from the front of the vertebral body to the most
+/// posterior point of the sternum and to the most anterior point of the inner wall. Zero where it is not known.
+LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall);
 
 /// Bone contours of one slice told apart by what was found there before, by position, size and Hu's first moment:
 /// "rib" (with side and number) around a rib's centreline, "sternum", "vertebra" within 45 mm of the column's middle,

@@ -12,6 +12,7 @@ namespace {
 constexpr double kGridMm = 2.8;
 constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   // windows around the path
 constexpr double kManubriumPart = 0.33;    // of the run's length
+constexpr double kFarthestAsideMm = 12;    // of an end's centroid from the midline
 constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
 constexpr double kLeastScore = 0.1;
 
@@ -36,12 +37,13 @@ Loop convexHull(Loop points) {
 }
 
 /// Straight line x(z) that most of the sure slices lie on, within 6 mm, by trying all pairs of 48 of them (the sternum
-/// is straight seen from the front; cartilages and clavicles that the path may have strayed to are not on it).
+/// is straight seen from the front; cartilages and clavicles that the path may have strayed to are not on it). Slices
+/// near the spine's x count more.
 struct Midline {
   double x = 0, z = 0, slope = 0;
   double at(double height) const { return x + slope * (height - z); }
 };
-Midline findMidline(const std::vector<Vec3>& path, const std::vector<float>& score) {
+Midline findMidline(const std::vector<Vec3>& path, const std::vector<float>& score, const Spine& spine, int firstSlice) {
   std::vector<std::size_t> sure;
   for (std::size_t s = 0; s < path.size(); ++s)
     if (score[s] > kLeastScore) sure.push_back(s);
@@ -52,11 +54,11 @@ Midline findMidline(const std::vector<Vec3>& path, const std::vector<float>& sco
     for (std::size_t b = a + stride; b < sure.size(); b += stride) {
       const Vec3 p = path[sure[a]], q = path[sure[b]];
       const Midline line{p.x, p.z, (q.x - p.x) / (q.z - p.z)};
-      if (std::abs(line.slope) > 0.25) continue;
+      if (std::abs(line.slope) > 0.2) continue;
       double support = 0;
       for (std::size_t s : sure) {
-        const double off = (path[s].x - line.at(path[s].z)) / 6;
-        support += score[s] * std::max(0.0, 1 - off * off);
+        const double off = (path[s].x - line.at(path[s].z)) / 6, aside = (path[s].x - spine.front[firstSlice + s].x) / 30;
+        support += score[s] * std::max(0.0, 1 - off * off) / (1 + aside * aside);
       }
       if (support > most) most = support, best = line;
     }
@@ -134,7 +136,7 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
   std::vector<Vec3> at(count);
   for (int s = 0; s < count; ++s)
     at[s] = body.position((path.cell[s] % nx + 0.5) * px - 0.5, (path.cell[s] / nx + 0.5) * py - 0.5, first + s);
-  const Midline midline = findMidline(at, path.score);
+  const Midline midline = findMidline(at, path.score, spine, first);
   const int near = std::max(1, int(std::lround(5 / sz)));
   std::vector<SternumSlice> slices(count);
   const auto findContours = [&](int from, int to, double halfWidth) {
@@ -164,6 +166,13 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
   const int wide = bestTo - int(kManubriumPart * (bestTo - bestFrom));
   findContours(wide, bestTo, kManubriumHalfMm);
   std::vector<SternumSlice> run(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
+  // An end that lies aside (a calcified cartilage, a clavicle) is not sternum.
+  const auto isEnd = [&](const SternumSlice& slice) {
+    return slice.isSeen && std::abs(slice.shape.centroid.x - midline.at(slice.slice * sz)) < kFarthestAsideMm;
+  };
+  while (!run.empty() && !isEnd(run.back())) run.pop_back();
+  while (!run.empty() && !isEnd(run.front())) run.erase(run.begin());
+  if (run.size() * sz < kLeastLengthMm) return {};
   // Gaps are filled between their neighbours.
   for (std::size_t n = 1; n + 1 < run.size(); ++n) {
     if (run[n].isSeen) continue;

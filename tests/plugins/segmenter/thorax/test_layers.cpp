@@ -75,7 +75,7 @@ TEST(MeasureLevel, GivesHallersLengthsOfAnEllipseWithASternum) {
   std::vector<Point2> wall;
   for (int d = -120; d <= 120; ++d) wall.push_back({120 * std::sin(d * 0.0174533), -80 * std::cos(d * 0.0174533)});
   const Loop sternum = {{-20, -30}, {20, -30}, {20, -20}, {-20, -20}};
-  const LevelMetrics m = measureLevel(5, sternum, {3, 60, 5}, {3, 74, 5}, wall);
+  const LevelMetrics m = measureLevel(5, sternum, {3, 60, 5}, wall);
   EXPECT_NEAR(m.transverse, 240, 0.05);
   EXPECT_NEAR(m.sternumToVertebra, 80, 1e-9);
   EXPECT_NEAR(m.deepestInnerWall, 140, 1e-9);
@@ -84,7 +84,7 @@ TEST(MeasureLevel, GivesHallersLengthsOfAnEllipseWithASternum) {
 }
 
 TEST(MeasureLevel, LeavesUnknownLengthsZero) {
-  const LevelMetrics m = measureLevel(0, {}, {0, 0, 0}, {0, 14, 0}, {});
+  const LevelMetrics m = measureLevel(0, {}, {0, 0, 0}, {});
   EXPECT_EQ(m.transverse, 0);
   EXPECT_EQ(m.sternumToVertebra, 0);
   EXPECT_EQ(m.deepestInnerWall, 0);

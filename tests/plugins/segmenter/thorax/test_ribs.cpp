@@ -95,13 +95,25 @@ TEST(CutAcross, FindsTheAxisOfATubeFromBesideIt) {
   EXPECT_FALSE(cutAcross(field, {10, 10, 30}, {0, 0, 1}, 160).isFound);
 }
 
-TEST(CutAcross, SaysWhenSomethingTouchesTheRib) {
+TEST(CutAcross, SaysWhenTheBoneIsTooLargeForARib) {
   auto ct = solids::air({60, 60, 60}, {1, 1, 1});
-  solids::fill(*ct, 600, solids::cylinder(30, 30, 11, 11));
+  solids::fill(*ct, 600, solids::cylinder(30, 30, 15, 15));
   const Field field(*ct, Box{{0, 0, 0}, {60, 60, 60}}, 0.8);
   const Cut cut = cutAcross(field, {30, 30, 30}, {0, 0, 1}, 160);
   EXPECT_FALSE(cut.isFound);
   EXPECT_TRUE(cut.isMerged);
+}
+
+TEST(CutAcross, PartsTwoRibsThatTouch) {
+  auto ct = solids::air({60, 60, 60}, {1, 1, 1});
+  std::fill(ct->hu.begin(), ct->hu.end(), std::int16_t(40));
+  solids::fill(*ct, 600, solids::cylinder(30, 24, 5, 5.75));
+  solids::fill(*ct, 600, solids::cylinder(30, 38, 5, 5.75));  // 2.5 mm apart: one contour at 160 HU
+  const Field field(*ct, Box{{0, 0, 0}, {60, 60, 60}}, 1);
+  const Cut cut = cutAcross(field, {30, 25, 30}, {0, 0, 1}, 160);
+  ASSERT_TRUE(cut.isFound);
+  EXPECT_NEAR(cut.centre.x, 30, 0.2);
+  EXPECT_NEAR(cut.centre.y, 24, 0.5);
 }
 
 /// Ribs of both sides at these heights (local z of their backs).
