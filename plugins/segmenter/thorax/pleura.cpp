@@ -1,0 +1,187 @@
+#include "plugins/segmenter/thorax/pleura.h"
+
+#include "kernel/physics/workers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pectora::thorax {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kRayStepMm = 0.7;
+constexpr double kNeckMm = 45;        // of a rib, from the vertebra to where it joins the wall
+constexpr double kBonyStiffness = 0.5, kStiffness = 0.02;
+constexpr double kBoneWeight = 0.1;   // of a bony sample beside a sample of lung
+
+/// Polar coordinates of a point about a slice's pole: angle index and radius.
+std::pair<double, double> polarOf(const PolarGrid& grid, int slice, Point2 p) {
+  const double dx = p.x - grid.poleX[slice], dy = grid.poleY - p.y;
+  const double index = std::atan2(dx, dy) / kRadians / PolarGrid::kStepDeg + PolarGrid::kAngles / 2;
+  return {index, std::hypot(dx, dy)};
+}
+
+/// Distance from a point to a polyline.
+double distanceTo(const std::vector<Point2>& line, Point2 p) {
+  double nearest = 1e300;
+  for (std::size_t n = 0; n + 1 < line.size(); ++n) {
+    const Point2 a = line[n], d{line[n + 1].x - a.x, line[n + 1].y - a.y};
+    const double length = d.x * d.x + d.y * d.y;
+    const double t = length > 0 ? std::clamp(((p.x - a.x) * d.x + (p.y - a.y) * d.y) / length, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, std::hypot(a.x + t * d.x - p.x, a.y + t * d.y - p.y));
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Point2 PolarGrid::at(int slice, double angle, double radius) const {
+  return {poleX[slice] + radius * std::sin(angle * kRadians), poleY - radius * std::cos(angle * kRadians)};
+}
+
+std::vector<double> outlineRadii(const Loop& outline, const PolarGrid& grid, int slice) {
+  std::vector<double> radius(PolarGrid::kAngles, -1);
+  const Point2 pole{grid.poleX[slice], grid.poleY};
+  for (std::size_t n = 0; n < outline.size(); ++n) {
+    const Point2 a = outline[n], b = outline[(n + 1) % outline.size()];
+    const double ia = polarOf(grid, slice, a).first, ib = polarOf(grid, slice, b).first;
+    // An edge that jumps across the back is not looked at.
+    if (std::abs(ia - ib) > PolarGrid::kAngles / 2) continue;
+    for (int i = std::max(0, int(std::ceil(std::min(ia, ib)))); i <= std::min<double>(PolarGrid::kAngles - 1, std::max(ia, ib)); ++i) {
+      const double s = std::sin(PolarGrid::degrees(i) * kRadians), c = -std::cos(PolarGrid::degrees(i) * kRadians);
+      const Point2 e{b.x - a.x, b.y - a.y};
+      const double denominator = s * e.y - c * e.x;
+      if (std::abs(denominator) < 1e-12) continue;
+      const double r = ((a.x - pole.x) * e.y - (a.y - pole.y) * e.x) / denominator;
+      if (r > 0 && (radius[i] < 0 || r < radius[i])) radius[i] = r;
+    }
+  }
+  return radius;
+}
+
+std::vector<double> lungRadii(const Field& field, const Body& body, const PolarGrid& grid, int slice,
+                              const std::vector<double>& skinRadius, double levelHu) {
+  std::vector<double> radius(PolarGrid::kAngles, -1);
+  const double z = slice * body.spacing.z;
+  for (int n = 0; n < PolarGrid::kAngles; ++n) {
+    float before = 0;
+    for (double r = skinRadius[n] - 3; r > 10; r -= kRayStepMm) {
+      const Point2 p = grid.at(slice, PolarGrid::degrees(n), r);
+      const float value = field.at({p.x, p.y, z});
+      if (value < levelHu && before >= levelHu) {
+        const Point2 inside = grid.at(slice, PolarGrid::degrees(n), r - 2.5);
+        const auto [i, j, k] = body.nearest({inside.x, inside.y, z});
+        if (body.isLung(i, j, k)) {
+          radius[n] = r + kRayStepMm * (levelHu - value) / (before - value);
+          break;
+        }
+      }
+      before = value;
+    }
+  }
+  return radius;
+}
+
+std::vector<WallSample> bonyWall(const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,
+                                 const Field& field, const PolarGrid& grid, double boneHu, double offsetMm) {
+  std::vector<WallSample> samples;
+  const double sliceSpacing = field.spacing().z;
+  for (const FoundRib& rib : ribs)
+    for (const Vec3& p : rib.body.line) {
+      const double slice = p.z / sliceSpacing;
+      const int k = std::clamp(int(std::lround(slice)), 0, int(grid.poleX.size()) - 1);
+      const auto [index, r] = polarOf(grid, k, {p.x, p.y});
+      if (index < 0 || index > PolarGrid::kAngles - 1) continue;
+      if (rib.body.reachesVertebra && distance(p, rib.body.line.front()) < kNeckMm) continue;
+      // Inwards from the centreline to where the bone ends.
+      const double angle = (index - PolarGrid::kAngles / 2) * PolarGrid::kStepDeg;
+      float before = field.at(p);
+      bool wasInBone = before >= boneHu;
+      for (double t = 0.4; t < 14; t += 0.4) {
+        const Point2 q = grid.at(k, angle, r - t);
+        const float value = field.at({q.x, q.y, p.z});
+        wasInBone = wasInBone || value >= boneHu;
+        // The marrow is not the end: soft tissue must follow for 2 mm.
+        const Point2 ahead = grid.at(k, angle, r - t - 2);
+        if (wasInBone && value < boneHu && before >= boneHu && field.at({ahead.x, ahead.y, p.z}) < boneHu) {
+          const double end = t - 0.4 * (boneHu - value) / (before - value);
+          samples.push_back({index, slice, r - end - offsetMm, 1});
+          break;
+        }
+        before = value;
+      }
+    }
+  for (const SternumSlice& s : sternum) {
+    const std::vector<double> near = outlineRadii(s.contour, grid, s.slice);
+    for (int n = 0; n < PolarGrid::kAngles; ++n)
+      if (near[n] > 0) samples.push_back({double(n), double(s.slice), near[n] - offsetMm, 1});
+  }
+  return samples;
+}
+
+std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,
+                               const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,
+                               const std::vector<SkinSlice>& skin, int firstSlice, double boneHu,
+                               const PleuraSettings& settings, const std::function<void(double)>& step) {
+  constexpr int angles = PolarGrid::kAngles;
+  const int slices = int(skin.size());
+  std::vector<std::vector<double>> outside(slices), lung(slices);
+  parallelFor(slices, [&](std::size_t s) {
+    outside[s] = outlineRadii(skin[s].whole, grid, firstSlice + int(s));
+    lung[s] = lungRadii(field, body, grid, firstSlice + int(s), outside[s], settings.lungLevelHu);
+  });
+  if (step) step(0.3);
+
+  std::vector<WallSample> bony = bonyWall(ribs, sternum, field, grid, boneHu, settings.offsetMm);
+  std::erase_if(bony, [&](const WallSample& b) { return b.slice < firstSlice - 0.5 || b.slice > firstSlice + slices - 0.5; });
+  std::vector<WallSample> all;
+  for (int s = 0; s < slices; ++s)
+    for (int n = 0; n < angles; ++n)
+      if (lung[s][n] > 0) all.push_back({double(n), double(firstSlice + s), lung[s][n], 1});
+  // Without any bone the lungs alone must do; without lungs a quarter of the way from the skin to the pole.
+  std::vector<WallSample> reference = bony.size() >= 50 ? bony : all;
+  if (reference.empty())
+    for (int s = 0; s < slices; ++s)
+      for (int n = 0; n < angles; ++n)
+        if (outside[s][n] > 0) reference.push_back({double(n), double(firstSlice + s), 0.75 * outside[s][n], 1});
+  if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
+  const UsualWall usual = usualWall(reference, outside, firstSlice, body.spacing.z);
+  std::vector<double> radius = fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
+  for (int round = 0; round < 3; ++round) {
+    if (step) step(0.4 + 0.15 * round);
+    std::vector<WallSample> samples;
+    std::vector<char> hasLung(std::size_t(slices) * angles, 0);
+    for (const WallSample& sample : all) {
+      const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
+      if (sample.radius < radius[at] - settings.deepestMm) continue;
+      samples.push_back(sample);
+      hasLung[at] = 1;
+    }
+    for (WallSample sample : bony) {
+      const int s = std::clamp(int(std::lround(sample.slice)) - firstSlice, 0, slices - 1);
+      if (hasLung[std::size_t(s) * angles + std::size_t(std::lround(sample.angleIndex))]) sample.weight = kBoneWeight;
+      samples.push_back(sample);
+    }
+    if (samples.empty()) break;
+    radius = fitWall(samples, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kStiffness);
+  }
+  if (step) step(0.9);
+
+  // Never nearer to the skin than the least thickness.
+  parallelFor(slices, [&](std::size_t s) {
+    for (int n = 0; n < angles; ++n) {
+      double& r = radius[s * angles + n];
+      if (outside[s][n] > 0) r = std::min(r, outside[s][n] - settings.leastThicknessMm);
+      r = std::max(r, 1.0);
+      for (int round = 0; round < 12 && outside[s][n] > 0 && r > 1; ++round) {
+        const double gap = distanceTo(skin[s].whole, grid.at(firstSlice + int(s), PolarGrid::degrees(n), r));
+        if (gap >= settings.leastThicknessMm - 0.05) break;
+        r = std::max(1.0, r - (settings.leastThicknessMm - gap));
+      }
+    }
+  });
+  return radius;
+}
+
+}  // namespace pectora::thorax

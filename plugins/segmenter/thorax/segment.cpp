@@ -1,0 +1,160 @@
+#include "plugins/segmenter/thorax/segment.h"
+
+#include "kernel/physics/workers.h"
+#include "kernel/stage/error.h"
+#include "plugins/segmenter/thorax/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora::thorax {
+namespace {
+
+/// Runs of neighbouring levels as "z -12 to 40 mm, ...".
+std::string ranges(const std::vector<LayerSlice>& levels) {
+  std::string text;
+  for (std::size_t n = 0; n < levels.size(); ++n) {
+    if (!levels[n].clipped) continue;
+    std::size_t last = n;
+    while (last + 1 < levels.size() && levels[last + 1].clipped) ++last;
+    text += (text.empty() ? "" : ", ") + std::to_string(std::lround(levels[n].z)) + " to " +
+            std::to_string(std::lround(levels[last].z));
+    n = last;
+  }
+  return text;
+}
+
+double medianOf(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// The part of the inner wall in front of the coronal plane, from right to left.
+std::vector<Point2> wallOf(const PolarGrid& grid, const std::vector<double>& radius, int slice, int row, double degrees) {
+  std::vector<Point2> line;
+  for (int n = 0; n < PolarGrid::kAngles; ++n)
+    if (std::abs(PolarGrid::degrees(n)) <= degrees + 1e-9)
+      line.push_back(grid.at(slice, PolarGrid::degrees(n), radius[std::size_t(row) * PolarGrid::kAngles + n]));
+  return line;
+}
+
+}  // namespace
+
+std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, const Settings& settings, Host& host) {
+  if (given->hu.size() != given->grid.voxels() || given->hu.empty())
+    throw Error("the CT holds no voxels, or fewer than its grid says").advise("load the whole series");
+  const auto part = [&](double from, double to, const char* what) {
+    return [&host, from, to, what](double done) {
+      host.checkCancel();
+      host.progress(from + (to - from) * done, what);
+    };
+  };
+  const std::shared_ptr<const Volume> ct = upright(given);
+  const Grid& grid = ct->grid;
+  if (grid.size[2] < 2 || grid.size[2] * grid.spacing.z < 30)
+    throw Error("the CT is too short to hold a chest")
+        .given(std::to_string(grid.size[2]) + " slices")
+        .allowed("at least 30 mm of slices")
+        .advise("load the whole series");
+
+  // Body, spine, sternum, ribs.
+  const Body body = findBody(*ct, part(0, 0.15, "finding the body"));
+  const Field field(*ct, body.box, settings.smoothingMm, part(0.15, 0.35, "smoothing"));
+  part(0.35, 0.4, "following the spine")(0);
+  const Spine spine = findSpine(body, field, settings.boneHu);
+  part(0.4, 0.45, "following the sternum")(0);
+  const std::vector<SternumSlice> sternum = findSternum(body, field, spine, settings.boneHu);
+  std::vector<std::string> warnings;
+  const std::vector<FoundRib> ribs =
+      findRibs(body, field, spine, settings.boneHu, warnings, part(0.45, 0.6, "tracking the ribs"));
+  for (const std::string& warning : warnings) host.warn(warning);
+  if (ribs.empty()) host.warn("no ribs were found");
+  if (sternum.empty()) host.warn("no sternum was found");
+  else if (sternum.front().slice >= body.lastSlice - 1)
+    host.warn("the sternum's upper end is not in view: its notch and joints are estimates");
+  else if (sternum.back().slice <= body.firstSlice + 1)
+    host.warn("the sternum's lower end is not in view: its joints are estimates");
+
+  // The coronal plane: the front of the vertebral bodies, the median over all slices where the column was seen.
+  std::vector<double> fronts;
+  for (int k = spine.firstSlice; k <= spine.lastSlice; ++k) fronts.push_back(spine.front[k].y);
+  PolarGrid polar;
+  polar.poleY = medianOf(fronts);
+  for (const Vec3& p : spine.front) polar.poleX.push_back(p.x);
+
+  // Skin in every slice of the body, pleura through all of them.
+  const int first = body.firstSlice, slices = body.lastSlice - first + 1;
+  std::vector<SkinSlice> skin(slices);
+  constexpr int kSlab = 16;
+  for (int s = 0; s < slices; s += kSlab) {
+    part(0.6, 0.75, "outlining the skin")(double(s) / slices);
+    parallelFor(std::min(kSlab, slices - s), [&](std::size_t t) {
+      skin[s + t] = findSkin(*ct, body, first + s + int(t), polar.poleY, settings.skin);
+    });
+  }
+  const std::vector<double> wall = findPleura(field, body, polar, ribs, sternum, skin, first, settings.boneHu,
+                                              settings.pleura, part(0.75, 0.9, "outlining the pleura"));
+
+  // Into patient coordinates.
+  part(0.9, 1, "measuring")(0);
+  auto anatomy = std::make_shared<Anatomy>();
+  const auto patient = [&](Vec3 p) { return toPatient(grid, p); };
+  const auto lift = [&](const std::vector<Point2>& line, double z) {
+    std::vector<Vec3> points;
+    for (const Point2& p : line) points.push_back(patient({p.x, p.y, z}));
+    return points;
+  };
+  for (const FoundRib& rib : ribs) {
+    Rib r{rib.side, rib.number, {}, rib.body.reachesVertebra, rib.body.reachesJunction};
+    for (const Vec3& p : rib.body.line) r.centerline.push_back(patient(p));
+    anatomy->ribs.push_back(std::move(r));
+  }
+  anatomy->sternum = measureSternum(sternum, grid.spacing.z);
+  Sternum& bone = anatomy->sternum;
+  if (!sternum.empty()) {
+    for (Vec3& p : bone.axis) p = patient(p);
+    for (auto& contour : bone.contours)
+      for (Vec3& p : contour) p = patient(p);
+    for (Notch& notch : bone.notches) notch.position = patient(notch.position);
+    for (Vec3* p : {&bone.jugularNotch, &bone.manubriosternalJoint, &bone.xiphisternalJoint, &bone.deepest}) *p = patient(*p);
+  }
+
+  std::vector<std::vector<SliceContour>> bones(slices);
+  parallelFor(slices, [&](std::size_t s) {
+    if (int(s) % settings.everySlice == 0)
+      bones[s] = classifyBones(field, first + int(s), settings.boneHu, ribs, sternum, spine);
+  });
+  std::size_t withoutSkin = 0;
+  for (int s = 0; s < slices; s += settings.everySlice) {
+    const int k = first + s;
+    const double z = k * grid.spacing.z;
+    const Vec3 front = spine.front[k];
+    if (k >= spine.firstSlice && k <= spine.lastSlice) anatomy->vertebralFront.push_back(patient(front));
+    for (SliceContour& contour : bones[s]) {
+      for (Vec3& p : contour.points) p = patient(p);
+      anatomy->contours.push_back(std::move(contour));
+    }
+    if (skin[s].front.size() < 3) {
+      ++withoutSkin;
+      continue;
+    }
+    const double level = patient({front.x, front.y, z}).z;
+    anatomy->skin.push_back({level, lift(skin[s].front, z), skin[s].clipped});
+    anatomy->pleura.push_back({level, lift(wallOf(polar, wall, k, s, 90), z), skin[s].clipped});
+    anatomy->contours.push_back({k, "skin", 0, Side::right, anatomy->skin.back().points, false});
+    anatomy->contours.push_back({k, "pleura", 0, Side::right, anatomy->pleura.back().points, false});
+
+    const auto here = std::find_if(sternum.begin(), sternum.end(), [&](const SternumSlice& x) { return x.slice == k; });
+    if (here == sternum.end()) continue;
+    LevelMetrics metrics = measureLevel(level, here->contour, front, wallOf(polar, wall, k, s, 120));
+    if (metrics.transverse > 0 && metrics.sternumToVertebra > 0 && metrics.deepestInnerWall > 0)
+      anatomy->metrics.push_back(metrics);
+  }
+  if (withoutSkin) host.warn(std::to_string(withoutSkin) + " levels have no skin in front of the coronal plane");
+  const std::string clipped = ranges(anatomy->skin);
+  if (!clipped.empty()) host.warn("the skin leaves the field of view at z " + clipped + " mm: not to be trusted there");
+  host.progress(1, "segmented");
+  return anatomy;
+}
+
+}  // namespace pectora::thorax

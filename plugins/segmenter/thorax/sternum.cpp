@@ -1,0 +1,193 @@
+#include "plugins/segmenter/thorax/sternum.h"
+
+#include "kernel/physics/workers.h"
+#include "plugins/segmenter/thorax/column_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora::thorax {
+namespace {
+
+constexpr double kGridMm = 2.8;
+constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   // windows around the path
+constexpr double kManubriumPart = 0.33;    // of the run's length
+constexpr double kFarthestAsideMm = 12;    // of an end's centroid from the midline
+constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
+constexpr double kLeastScore = 0.1;
+
+double medianOf(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// Convex hull (Andrew's monotone chain), positive area.
+Loop convexHull(Loop points) {
+  std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  const auto turn = [](Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
+  Loop hull(2 * points.size());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < points.size(); hull[n++] = points[i++])
+    while (n >= 2 && turn(hull[n - 2], hull[n - 1], points[i]) <= 0) --n;
+  const std::size_t lower = n + 1;
+  for (std::size_t i = points.size() - 1; i-- > 0; hull[n++] = points[i])
+    while (n >= lower && turn(hull[n - 2], hull[n - 1], points[i]) <= 0) --n;
+  hull.resize(n - 1);
+  return hull;
+}
+
+/// Straight line x(z) that most of the sure slices lie on, within 6 mm, by trying all pairs of 48 of them (the sternum
+/// is straight seen from the front; cartilages and clavicles that the path may have strayed to are not on it). Slices
+/// near the spine's x count more.
+struct Midline {
+  double x = 0, z = 0, slope = 0;
+  double at(double height) const { return x + slope * (height - z); }
+};
+Midline findMidline(const std::vector<Vec3>& path, const std::vector<float>& score, const Spine& spine, int firstSlice) {
+  std::vector<std::size_t> sure;
+  for (std::size_t s = 0; s < path.size(); ++s)
+    if (score[s] > kLeastScore) sure.push_back(s);
+  Midline best;
+  double most = 0;
+  const std::size_t stride = std::max<std::size_t>(1, sure.size() / 48);
+  for (std::size_t a = 0; a < sure.size(); a += stride)
+    for (std::size_t b = a + stride; b < sure.size(); b += stride) {
+      const Vec3 p = path[sure[a]], q = path[sure[b]];
+      const Midline line{p.x, p.z, (q.x - p.x) / (q.z - p.z)};
+      if (std::abs(line.slope) > 0.2) continue;
+      double support = 0;
+      for (std::size_t s : sure) {
+        const double off = (path[s].x - line.at(path[s].z)) / 6, aside = (path[s].x - spine.front[firstSlice + s].x) / 30;
+        support += score[s] * std::max(0.0, 1 - off * off) / (1 + aside * aside);
+      }
+      if (support > most) most = support, best = line;
+    }
+  if (most == 0 && !sure.empty()) best = {path[sure[0]].x, path[sure[0]].z, 0};
+  return best;
+}
+
+/// The contour around a point of the midline: hull of the bone in the window; not seen if no bone lies in the middle.
+SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double halfWidth, double boneHu) {
+  constexpr double kPixel = 0.7;
+  const int hx = int(halfWidth / kPixel), hy = int(kHalfDepthMm / kPixel);
+  Plane plane(2 * hx + 1, 2 * hy + 1);
+  for (int j = -hy; j <= hy; ++j)
+    for (int i = -hx; i <= hx; ++i)
+      plane.at(i + hx, j + hy) = field.at(centre + Vec3{i * kPixel, j * kPixel, 0});
+  SternumSlice result;
+  result.slice = slice;
+  Loop all;
+  bool crossesMiddle = false;
+  for (const Loop& loop : isoContours(plane, float(boneHu))) {
+    const Shape shape = shapeOf(loop);
+    const double area = shape.area * kPixel * kPixel, y = (shape.centroid.y - hy) * kPixel;
+    if (area < 12 || std::abs(y) > 12) continue;
+    const auto [low, high] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
+    // Fragments that do not come within 18 mm of the middle are calcified cartilage.
+    if ((low->x - hx) * kPixel > 18 || (high->x - hx) * kPixel < -18) continue;
+    crossesMiddle = crossesMiddle || ((low->x - hx) * kPixel < 4 && (high->x - hx) * kPixel > -4);
+    for (Point2 p : loop) all.push_back({centre.x + (p.x - hx) * kPixel, centre.y + (p.y - hy) * kPixel});
+  }
+  if (!crossesMiddle) return result;
+  result.contour = convexHull(std::move(all));
+  result.shape = shapeOf(result.contour);
+  result.isSeen = result.shape.area > 25;
+  return result;
+}
+
+}  // namespace
+
+std::vector<SternumSlice> findSternum(const Body& body, const Field& field, const Spine& spine, double boneHu) {
+  const int w = body.size[0], h = body.size[1], first = body.firstSlice, count = body.lastSlice - first + 1;
+  const double sx = body.spacing.x, sy = body.spacing.y, sz = body.spacing.z;
+  const int px = std::max(1, int(std::lround(kGridMm / sx))), py = std::max(1, int(std::lround(kGridMm / sy)));
+  const int nx = w / px, ny = h / py, cells = nx * ny;
+
+  // Score of every position of every slice.
+  std::vector<float> score(std::size_t(cells) * count);
+  parallelFor(count, [&](std::size_t s) {
+    const int k = first + int(s);
+    Plane bone(w, h);
+    std::vector<int> skin(w, h);  // first row of the torso in every column
+    for (int j = h - 1; j >= 0; --j)
+      for (int i = 0; i < w; ++i)
+        if (body.isTorso(i, j, k)) {
+          skin[i] = j;
+          bone.at(i, j) = boneness(body.hu[body.index(i, j, k)]);
+        }
+    const Sums sums(bone);
+    const auto mean = [&](double x, double y, double x0, double x1, double y0, double y1) {
+      return sums.mean(int(std::lround(x + x0 / sx)), int(std::lround(x + x1 / sx)), int(std::lround(y + y0 / sy)),
+                       int(std::lround(y + y1 / sy)));
+    };
+    for (int c = 0; c < cells; ++c) {
+      const double x = (c % nx + 0.5) * px, y = (c / nx + 0.5) * py;
+      const Vec3 p = body.position(x - 0.5, y - 0.5, k);
+      const double depth = (y - skin[std::min(w - 1, int(x))]) * sy;
+      const bool isAllowed = std::abs(p.x - spine.front[k].x) < 40 && p.y < spine.front[k].y - 18 && depth > 2 && depth < 70;
+      score[cells * s + c] = !isAllowed ? -1
+          : float(mean(x, y, -12, 12, -5, 5) - 0.7 * mean(x, y, -12, 12, -17, -8) - 0.7 * mean(x, y, -12, 12, 9, 20));
+    }
+  });
+  const ColumnPath path = bestColumn(score, nx, ny, count, int(3 / sz), std::max(1, int(std::ceil(sz / kGridMm))),
+                                     float(0.06 * kGridMm / std::max(sz, 1.0)));
+
+  // The midline, and the path's depth near it.
+  std::vector<Vec3> at(count);
+  for (int s = 0; s < count; ++s)
+    at[s] = body.position((path.cell[s] % nx + 0.5) * px - 0.5, (path.cell[s] / nx + 0.5) * py - 0.5, first + s);
+  const Midline midline = findMidline(at, path.score, spine, first);
+  const int near = std::max(1, int(std::lround(5 / sz)));
+  std::vector<SternumSlice> slices(count);
+  const auto findContours = [&](int from, int to, double halfWidth) {
+    parallelFor(to - from + 1, [&](std::size_t n) {
+      const int s = from + int(n);
+      std::vector<double> y;
+      for (int t = std::max(0, s - near); t <= std::min(count - 1, s + near); ++t)
+        if (path.score[t] > kLeastScore && std::abs(at[t].x - midline.at(at[t].z)) < 14) y.push_back(at[t].y);
+      slices[s] = {};
+      slices[s].slice = first + s;
+      if (y.empty()) return;
+      slices[s] = contourAround(field, first + s, {midline.at(at[s].z), medianOf(y), at[s].z}, halfWidth, boneHu);
+    });
+  };
+  // The longest run of slices with a contour.
+  const int longestGap = int(kLongestGapMm / sz);
+  int bestFrom = 0, bestTo = -1;
+  findContours(0, count - 1, kBodyHalfMm);
+  for (int s = 0, from = -1, to = -1; s <= count; ++s) {
+    const bool isSeen = s < count && slices[s].isSeen;
+    if (isSeen && (from < 0 || s - to - 1 > longestGap)) from = s;
+    if (isSeen) to = s;
+    if (from >= 0 && to - from > bestTo - bestFrom) bestFrom = from, bestTo = to;
+  }
+  if ((bestTo - bestFrom) * sz < kLeastLengthMm) return {};
+  // In its upper third, the manubrium, the window is wider.
+  const int wide = bestTo - int(kManubriumPart * (bestTo - bestFrom));
+  findContours(wide, bestTo, kManubriumHalfMm);
+  std::vector<SternumSlice> run(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
+  // An end that lies aside (a calcified cartilage, a clavicle) is not sternum.
+  const auto isEnd = [&](const SternumSlice& slice) {
+    return slice.isSeen && std::abs(slice.shape.centroid.x - midline.at(slice.slice * sz)) < kFarthestAsideMm;
+  };
+  while (!run.empty() && !isEnd(run.back())) run.pop_back();
+  while (!run.empty() && !isEnd(run.front())) run.erase(run.begin());
+  if (run.size() * sz < kLeastLengthMm) return {};
+  // Gaps are filled between their neighbours.
+  for (std::size_t n = 1; n + 1 < run.size(); ++n) {
+    if (run[n].isSeen) continue;
+    // A gap takes the contour of the slice below it, moved to the line between both ends.
+    std::size_t above = n;
+    while (!run[above].isSeen) ++above;
+    const SternumSlice &low = run[n - 1], &high = run[above];
+    const double t = 1.0 / double(above - n + 1);
+    const Point2 shift{t * (high.shape.centroid.x - low.shape.centroid.x), t * (high.shape.centroid.y - low.shape.centroid.y)};
+    run[n].contour = low.contour;
+    for (Point2& p : run[n].contour) p.x += shift.x, p.y += shift.y;
+    run[n].shape = shapeOf(run[n].contour);
+  }
+  std::reverse(run.begin(), run.end());
+  return run;
+}
+
+}  // namespace pectora::thorax
