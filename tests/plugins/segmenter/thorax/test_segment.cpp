@@ -26,7 +26,7 @@ const Case& phantomCase() {
     settings.coverage = "thorax";
     const phantom::Patient patient = phantom::makePatient(settings);
     const phantom::Images images = phantom::rasterise(patient, settings, [](double) {});
-    return Case{images.ct, phantom::makeTruth(patient, settings, images.labels)};
+    return Case{images.ct, phantom::makeTruth(patient, images.labels)};
   }();
   return made;
 }
