@@ -18,7 +18,7 @@ Curve withHandles(Curve curve, double scale) {
 // Scales the handles until the curve has the wanted length, or comes as close as handles between half and one and a half
 // times their length allow: beyond that it would kink. Longer handles make a longer curve, so bisection finds it.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0.5, high = 1.5;
+  double low = 0.8, high = 1.2;
   if (withHandles(curve, low).length() >= length) return withHandles(curve, low);
   if (withHandles(curve, high).length() <= length) return withHandles(curve, high);
   for (int i = 0; i < 50; ++i) {
@@ -74,6 +74,7 @@ RigidMotion Plan::partial(double t) const {
 Vec3 Plan::moved(const Anchor& anchor, double t) const {
   switch (anchor.body) {
     case BodyKind::rib:
+    case BodyKind::still:
       return anchor.rest;
     case BodyKind::sternum:
       return partial(t)(anchor.rest);

@@ -16,14 +16,19 @@ struct EffectCall : Value {
   const char* kind() const override { return kName; }
 };
 
-enum class BodyKind { rib, cartilage, sternum };
+enum class BodyKind {
+  rib,
+  cartilage,
+  sternum,
+  still,   ///< what the operation does not move: the abdomen behind the wall below the costal arch
+};
 
 /// Where an inner point hangs on a body: a material point of that body.
 struct Anchor {
   int point = 0;                       ///< index into Scene::inner
   BodyKind body = BodyKind::rib;
-  int index = 0;                       ///< into RibCage::ribs or ::cartilages; 0 for the sternum
-  double u = 0;                        ///< curve parameter of the material point; unused for the sternum
+  int index = 0;                       ///< into RibCage::ribs or ::cartilages; 0 for the others
+  double u = 0;                        ///< curve parameter of the material point; of a rib or cartilage only
   Vec3 rest;                           ///< its position at rest, mm
 };
 

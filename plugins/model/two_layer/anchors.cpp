@@ -47,7 +47,7 @@ Anchor refine(const BodyPoints& body, int sample, Vec3 p) {
 
 }  // namespace
 
-std::vector<Anchor> findAnchors(const Scene& scene) {
+std::vector<Anchor> findAnchors(const Scene& scene, double reach) {
   const std::vector<BodyPoints> bodies = collectBodies(*scene.cage);
   std::vector<std::vector<Anchor>> found(scene.inner.size());
   parallelFor(scene.rows, [&](std::size_t row) {
@@ -73,6 +73,10 @@ std::vector<Anchor> findAnchors(const Scene& scene) {
       std::partial_sort(near.begin(), near.begin() + count, near.end(), [](const Near& a, const Near& b) {
         return a.squared != b.squared ? a.squared < b.squared : a.body < b.body;
       });
+      if (count == 0 || near.front().squared > reach * reach) {
+        found[point].push_back({point, BodyKind::still, 0, 0, p});
+        continue;
+      }
       for (std::size_t i = 0; i < count; ++i) {
         Anchor anchor = refine(bodies[near[i].body], near[i].sample, p);
         anchor.point = point;

@@ -10,6 +10,8 @@
 namespace pectora {
 namespace {
 
+constexpr int kFineColumns = 400;   // points of a pleura level that rays are cut with
+
 // Lowest and highest z of ribs and sternum, with a margin.
 std::pair<double, double> cageExtent(const RibCage& cage, double margin) {
   double low = INFINITY, high = -INFINITY;
@@ -20,6 +22,24 @@ std::pair<double, double> cageExtent(const RibCage& cage, double margin) {
   // Above the sternum there are shoulders and neck, which the operation does not move.
   if (!cage.anatomy->sternum.contours.empty()) high = std::min(high, cage.anatomy->sternum.jugularNotch.z);
   return {low - margin, high + margin};
+}
+
+// Where the ray in the axial plane from `center` through `skin` leaves the pleura: the furthest crossing that is not beyond the
+// skin; the nearer end of the line where there is none. So skin and pleura face each other, also in a pit.
+Vec3 facingPoint(const std::vector<Vec3>& pleura, Vec3 skin, Vec3 center) {
+  const double dx = skin.x - center.x, dy = skin.y - center.y;
+  double best = -1;
+  for (std::size_t i = 1; i < pleura.size(); ++i) {
+    // center + t d = a + s (b - a), in x and y.
+    const Vec3 a = pleura[i - 1], e = pleura[i] - a;
+    const double cross = dx * e.y - dy * e.x;
+    if (cross == 0) continue;
+    const double ax = a.x - center.x, ay = a.y - center.y;
+    const double t = (ax * e.y - ay * e.x) / cross, s = (ax * dy - ay * dx) / cross;
+    if (s >= 0 && s <= 1 && t > best && t <= 1) best = t;
+  }
+  if (best > 0) return {center.x + best * dx, center.y + best * dy, skin.z};
+  return distance(skin, pleura.front()) < distance(skin, pleura.back()) ? pleura.front() : pleura.back();
 }
 
 // A level between two slices of a layer, point by point at equal arc length.
@@ -66,9 +86,12 @@ void buildLayers(const LayerSettings& settings, Scene& scene) {
   scene.columns = std::max(5, int(std::lround(longest / settings.spacing)) + 1);
   for (int r = 0; r < scene.rows; ++r) {
     const double z = skin.front().z + extent * r / (scene.rows - 1);
-    const std::vector<Vec3> outer = levelAt(skin, z, scene.columns), inner = levelAt(pleura, z, scene.columns);
-    scene.outer.insert(scene.outer.end(), outer.begin(), outer.end());
-    scene.inner.insert(scene.inner.end(), inner.begin(), inner.end());
+    const std::vector<Vec3> outer = levelAt(skin, z, scene.columns), inner = levelAt(pleura, z, kFineColumns);
+    const Vec3 center = (outer.front() + outer.back()) / 2;
+    for (const Vec3& p : outer) {
+      scene.outer.push_back(p);
+      scene.inner.push_back(facingPoint(inner, p, center));
+    }
   }
 
   // Means over the grid, which the spring constants follow from.

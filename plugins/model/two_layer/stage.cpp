@@ -13,6 +13,7 @@ class TwoLayer final : public Stage {
   void describe(Visitor& v) override {
     v.real("spacing", settings_.spacing, "mm", {1, 50}, {4, 12}, "Distance between neighbouring skin points");
     v.real("margin", settings_.margin, "mm", {0, 200}, {0, 60}, "How far the model reaches above the sternum and below the ribs");
+    v.real("reach", reach_, "mm", {1, 1000}, {20, 80}, "Pleura further than this from every rib, cartilage and the sternum lies on the abdomen and is held in place");
     v.real("density", settings_.density, "kg/m3", {1, 20000}, {900, 1100}, "Density of the chest wall");
   }
 
@@ -24,7 +25,7 @@ class TwoLayer final : public Stage {
     buildLayers(settings_, *scene);
     host.checkCancel();
     host.progress(0.5, "attaching the pleura");
-    scene->anchors = findAnchors(*scene);
+    scene->anchors = findAnchors(*scene, reach_);
     host.info(fmt::format("{} rows x {} columns, {:.1f} x {:.1f} mm apart, wall {:.1f} mm", scene->rows, scene->columns,
                           scene->rowSpacing, scene->columnSpacing, scene->thickness));
     return {scene};
@@ -32,6 +33,7 @@ class TwoLayer final : public Stage {
 
  private:
   LayerSettings settings_;
+  double reach_ = 40;
 };
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(Layers, AreRefusedWhereTooLittleIsInView) {
 
 TEST(Anchors, AreTheNearestPointsOfThreeDifferentBodies) {
   const Scene scene = built(barrel(), 10);
-  const std::vector<Anchor> anchors = findAnchors(scene);
+  const std::vector<Anchor> anchors = findAnchors(scene, 1000);
   ASSERT_EQ(anchors.size(), 3u * scene.points());
   for (int i = 0; i < scene.points(); ++i) {
     const Anchor* three = &anchors[3 * i];
@@ -116,4 +116,19 @@ TEST(Anchors, AreTheNearestPointsOfThreeDifferentBodies) {
     }
     EXPECT_LE(distance(three[0].rest, scene.inner[i]), distance(three[2].rest, scene.inner[i]) + 1e-9);
   }
+}
+
+TEST(Anchors, HoldInPlaceWhatLiesTooFarFromEveryBody) {
+  const Scene scene = built(barrel(), 10);
+  const std::vector<Anchor> anchors = findAnchors(scene, 20);
+  std::vector<int> perPoint(scene.points());
+  int still = 0;
+  for (const Anchor& a : anchors) {
+    ++perPoint[a.point];
+    if (a.body != BodyKind::still) continue;
+    ++still;
+    EXPECT_EQ(a.rest, scene.inner[a.point]);
+  }
+  EXPECT_GT(still, 0);
+  for (int count : perPoint) EXPECT_TRUE(count == 1 || count == 3);
 }
