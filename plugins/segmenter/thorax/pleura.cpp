@@ -146,10 +146,10 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
       for (int n = 0; n < angles; ++n)
         if (outside[s][n] > 0) reference.push_back({double(n), double(firstSlice + s), 0.75 * outside[s][n], 1});
   if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
-  const UsualWall usual = usualWall(reference, outside, firstSlice, body.spacing.z);
+  const UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
   std::vector<double> radius = fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
-  for (int round = 0; round < 3; ++round) {
-    if (step) step(0.4 + 0.15 * round);
+  for (int round = 0; round < 5; ++round) {
+    if (step) step(0.4 + 0.1 * round);
     std::vector<WallSample> samples;
     std::vector<char> hasLung(std::size_t(slices) * angles, 0);
     for (const WallSample& sample : all) {

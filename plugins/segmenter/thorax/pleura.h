@@ -45,11 +45,11 @@ struct UsualWall {
   std::vector<double> radius;   ///< mm
   std::vector<double> weight;   ///< of a sample there
 };
-/// As far below the skin as a quarter of the samples within 6 degrees at least are; at the sides (more than 60 degrees
-/// from the front) not beyond the median radius either. The weight is faint (1e-5) within 40 mm of a sample at that
+/// As far below the skin as nine tenths of the samples within 6 degrees at least are, but not beyond the radius that 97 %
+/// of them and of the lung's keep within; at the sides (more than 60 degrees from the front) not beyond their median. The weight is faint (1e-5) within 40 mm of a sample at that
 /// angle and 1e-3 beyond. `skinRadius[s][n]`, negative where unknown.
-UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<std::vector<double>>& skinRadius,
-                    int firstSlice, double sliceSpacing);
+UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<WallSample>& lung,
+                    const std::vector<std::vector<double>>& skinRadius, int firstSlice, double sliceSpacing);
 
 /// The smooth surface through samples: least squares of the samples' misfit plus `stiffness` times the squared second
 /// differences (thin plate), with a pull to the usual wall so that it stays put where nothing is known. Returns
@@ -66,7 +66,7 @@ struct PleuraSettings {
 
 /// The inner wall in slices firstSlice to lastSlice: radius[(slice - firstSlice) * kAngles + n]. A first surface goes
 /// through the bony wall alone (or, if there is none, through all lung); lung within `deepestMm` of it, or outside it,
-/// then joins it with a greater weight, and so twice more from the new surface. The last surface is cut back to
+/// then joins it with a greater weight, and so four times more from the new surface. The last surface is cut back to
 /// `leastThicknessMm` inside the skin.
 std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,
                                const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,

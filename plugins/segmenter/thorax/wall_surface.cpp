@@ -19,14 +19,19 @@ double quantileOf(std::vector<double>& v, double part) {
 
 }  // namespace
 
-UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<std::vector<double>>& skinRadius,
+UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<WallSample>& lung,
+                    const std::vector<std::vector<double>>& skinRadius,
                     int firstSlice, double sliceSpacing) {
   constexpr int angles = PolarGrid::kAngles;
   const int slices = int(skinRadius.size());
   // Radii and depths below the skin that occur within 6 degrees of each angle.
-  std::vector<double> radius(angles, -1), depth(angles, -1);
-  std::vector<std::vector<double>> radii(angles), depths(angles);
+  std::vector<double> radius(angles, -1), large(angles, -1), depth(angles, -1);
+  std::vector<std::vector<double>> radii(angles), depths(angles), outermost(angles);
   std::vector<std::vector<char>> isKnown(angles, std::vector<char>(slices, 0));
+  for (const WallSample& s : lung) {
+    const int n = std::clamp(int(std::lround(s.angleIndex)), 0, angles - 1);
+    for (int m = std::max(0, n - 4); m <= std::min(angles - 1, n + 4); ++m) outermost[m].push_back(s.radius);
+  }
   for (const WallSample& s : samples) {
     const int n = std::clamp(int(std::lround(s.angleIndex)), 0, angles - 1);
     const int row = std::clamp(int(std::lround(s.slice)) - firstSlice, 0, slices - 1);
@@ -39,17 +44,20 @@ UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<st
   for (int n = 0; n < angles; ++n)
     for (int d = 0; d < angles && radius[n] < 0; ++d)
       for (int m : {n - d, n + d})
-        if (m >= 0 && m < angles && radius[n] < 0 && !radii[m].empty() && !depths[m].empty())
-          radius[n] = quantileOf(radii[m], 0.5), depth[n] = quantileOf(depths[m], 0.25);
+        if (m >= 0 && m < angles && radius[n] < 0 && !radii[m].empty() && !depths[m].empty()) {
+          radius[n] = quantileOf(radii[m], 0.5), depth[n] = quantileOf(depths[m], 0.1);
+          large[n] = quantileOf(radii[m], 0.97);
+          if (!outermost[m].empty()) large[n] = std::max(large[n], quantileOf(outermost[m], 0.97));
+        }
   UsualWall usual;
   usual.radius.resize(std::size_t(slices) * angles);
   usual.weight.assign(usual.radius.size(), kFarPull);
   for (int s = 0; s < slices; ++s)
     for (int n = 0; n < angles; ++n) {
-      // In front the wall follows the skin; at the sides there may be arms, and it stays in.
+      // In front the wall follows the skin, within what occurs; at the sides there may be arms, and it stays in.
       const bool isFront = std::abs(PolarGrid::degrees(n)) <= 60;
       const double below = skinRadius[s][n] > 0 ? skinRadius[s][n] - depth[n] : radius[n];
-      usual.radius[std::size_t(s) * angles + n] = std::max(1.0, isFront ? below : std::min(radius[n], below));
+      usual.radius[std::size_t(s) * angles + n] = std::max(1.0, std::min(isFront ? large[n] : radius[n], below));
     }
   const int reach = int(kNearMm / sliceSpacing);
   for (int n = 0; n < angles; ++n)
