@@ -18,11 +18,11 @@ struct SpringPull {
   double magnitude;
 };
 
-SpringPull pull(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double k) {
+SpringPull pull(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness, double compression) {
   const Vec3 d = far - near;
   const double length = norm(d);
   const Vec3 direction = length > kDegenerate * restLength && length > 0 ? d / length : restDirection;
-  const double tension = k * (length - restLength);
+  const double tension = (length < restLength ? compression * stiffness : stiffness) * (length - restLength);
   return {direction * tension, 0.5 * tension * (length - restLength), std::abs(tension)};
 }
 
@@ -32,8 +32,8 @@ class LatticeTerm final : public Term {
       : name_(std::move(name)), rows_(system.rows), columns_(system.columns), rest_(system.rest) {
     // Every spring is seen from both of its ends, so that points can be evaluated independently.
     for (const StencilSpring& s : stencil) {
-      arms_[int(s.from)].push_back({int(s.to), s.rows, s.columns, s.stiffnessNPerMm});
-      arms_[int(s.to)].push_back({int(s.from), -s.rows, -s.columns, s.stiffnessNPerMm});
+      arms_[int(s.from)].push_back({int(s.to), s.rows, s.columns, s.stiffnessNPerMm, s.compression});
+      arms_[int(s.to)].push_back({int(s.from), -s.rows, -s.columns, s.stiffnessNPerMm, s.compression});
     }
     const std::size_t points = std::size_t(rows_) * columns_;
     for (int layer = 0; layer < 2; ++layer) {
@@ -65,7 +65,7 @@ class LatticeTerm final : public Term {
   // One spring as seen from a point.
   struct Arm {
     int layer, rows, columns;
-    double stiffness;
+    double stiffness, compression;
   };
 
   // Calls f(node, other node, slot of the rest length, arm) for every spring end in some rows of a layer.
@@ -97,7 +97,7 @@ class LatticeTerm final : public Term {
       forEachSpring(layer, begin, end, [&](std::size_t node, std::size_t other, std::size_t slot, const Arm& arm) {
         const Vec3 restDirection = normalized(rest_[other] - rest_[node]);
         const SpringPull p = pull(positions[node], positions[other], restLengths_[layer][slot], restDirection,
-                                  arm.stiffness);
+                                  arm.stiffness, arm.compression);
         energies[task] += 0.5 * p.energy;  // the other end has the other half
         if (!gradient) return;
         gradient->add(node, -p.force);
@@ -162,7 +162,7 @@ class SpringTerm final : public Term {
  private:
   SpringPull at(std::size_t i, const NodeVectors& positions) const {
     return pull(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
-                springs_[i].stiffnessNPerMm);
+                springs_[i].stiffnessNPerMm, 1);
   }
 
   std::string name_;

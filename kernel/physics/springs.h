@@ -13,6 +13,7 @@ struct StencilSpring {
   Layer from = Layer::outer, to = Layer::outer;
   int rows = 0, columns = 0;
   double stiffnessNPerMm = 0;
+  double compression = 1;   ///< part of the stiffness that acts while it is shorter than at rest: 1 a spring, 0 a thread
 };
 
 /// A spring between two nodes by number.

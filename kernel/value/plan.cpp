@@ -7,25 +7,38 @@
 namespace pectora {
 namespace {
 
-// A cubic piece with both end handles scaled, ends and end tangents kept.
-Curve withHandles(Curve curve, double scale) {
-  std::vector<Vec3>& p = curve.controls;
-  p[1] = lerp(p[0], p[1], scale);
-  p[2] = lerp(p[3], p[2], scale);
-  return curve;
+// Deflection of a clamped beam whose other end is guided: 0 to 1, flat at both ends.
+double beam(double s) { return s * s * (3 - 2 * s); }
+
+// The parameter at which a control point has its greatest influence.
+double greville(const Curve& curve, std::size_t control) {
+  double sum = 0;
+  for (int k = 1; k <= curve.degree; ++k) sum += curve.knots[control + k];
+  return sum / curve.degree;
 }
 
-// Scales the handles until the curve has the wanted length, or comes as close as handles between half and one and a half
-// times their length allow: beyond that it would kink. Longer handles make a longer curve, so bisection finds it.
+// Scales how far the inner control points bow away from the chord; ends and end tangents (the outer two at each end) stay.
+Curve withBow(const Curve& curve, double scale) {
+  Curve bowed = curve;
+  const std::size_t n = curve.controls.size();
+  for (std::size_t i = 2; i + 2 < n; ++i) {
+    const Vec3 chord = lerp(curve.controls.front(), curve.controls.back(), greville(curve, i));
+    bowed.controls[i] = lerp(chord, curve.controls[i], scale);
+  }
+  return bowed;
+}
+
+// The bow that gives the wanted length, or comes as close as flattening it can. It is never raised: a cartilage that is
+// too long now pushes its rib aside rather than arching forwards.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0.8, high = 1.2;
-  if (withHandles(curve, low).length() >= length) return withHandles(curve, low);
-  if (withHandles(curve, high).length() <= length) return withHandles(curve, high);
+  double low = 0, high = 1;
+  if (withBow(curve, low).length() >= length) return withBow(curve, low);
+  if (curve.length() <= length) return curve;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
-    (withHandles(curve, middle).length() < length ? low : high) = middle;
+    (withBow(curve, middle).length() < length ? low : high) = middle;
   }
-  return withHandles(curve, 0.5 * (low + high));
+  return withBow(curve, 0.5 * (low + high));
 }
 
 }  // namespace
@@ -51,10 +64,14 @@ std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion
         rotates = false;
       }
     }
-    // The rib's end stays with its handle; the other end takes its handle along.
+    // Control points follow by their place along the curve; the outer two at each end go with the ends.
     Curve curve = rest;
-    curve.controls[3] = end + endMove;
-    curve.controls[2] = rotates ? sternum(rest.controls[2]) : rest.controls[2] + endMove;
+    const std::size_t n = rest.controls.size();
+    for (std::size_t i = 2; i < n; ++i) {
+      const Vec3 p = rest.controls[i];
+      const Vec3 full = rotates ? sternum(p) - p : endMove;
+      curve.controls[i] = p + full * (i + 2 >= n ? 1 : beam(greville(rest, i)));
+    }
     const double length = rest.length();
     const bool still = norm(endMove) < 1e-12;
     MovedCartilage result{still ? curve : withLength(curve, length), 0};

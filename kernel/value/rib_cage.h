@@ -13,8 +13,7 @@ struct RibCurve {
   double rmsError = 0;     ///< of the tracked centroids against the curve, mm
 };
 
-/// A costal cartilage, from the costochondral junction (u = 0) to where it joins (u = 1): one cubic piece, whose four
-/// control points are its ends and the handles of its end tangents.
+/// A costal cartilage, from the costochondral junction (u = 0) to where it joins (u = 1).
 struct Cartilage {
   Side side = Side::right;
   int rib = 0;

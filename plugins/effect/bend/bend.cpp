@@ -17,7 +17,7 @@ class Bend final : public Effect {
       // The calibrated weight is k / L^2.
       const double a = rows * scene.rowSpacing, b = columns * scene.columnSpacing;
       const double k = skin_.stiffness > 0 ? skin_.stiffness : weight * (a * a + b * b);
-      part.stencil.push_back({Layer::outer, Layer::outer, rows, columns, k});
+      part.stencil.push_back({Layer::outer, Layer::outer, rows, columns, k, skin_.compression});
     }
     part.notes = {fmt::format("k = {:.4g} N/mm and more with length", part.stencil.front().stiffnessNPerMm)};
     return part;

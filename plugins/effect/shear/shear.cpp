@@ -13,7 +13,7 @@ class Shear final : public Effect {
   Contribution contribute(const Scene& scene, const System&) override {
     const double k = skin_.stiffness > 0 ? skin_.stiffness : skin_.calibrate(scene).shear;
     Contribution part;
-    part.stencil = {{Layer::outer, Layer::outer, 1, 1, k}, {Layer::outer, Layer::outer, -1, 1, k}};
+    part.stencil = {{Layer::outer, Layer::outer, 1, 1, k, skin_.compression}, {Layer::outer, Layer::outer, -1, 1, k, skin_.compression}};
     part.notes = {fmt::format("k = {:.4g} N/mm", k)};
     return part;
   }

@@ -15,7 +15,7 @@ class Stretch final : public Effect {
     const double rows = skin_.stiffness > 0 ? skin_.stiffness : k.stretchRows;
     const double columns = skin_.stiffness > 0 ? skin_.stiffness : k.stretchColumns;
     Contribution part;
-    part.stencil = {{Layer::outer, Layer::outer, 1, 0, rows}, {Layer::outer, Layer::outer, 0, 1, columns}};
+    part.stencil = {{Layer::outer, Layer::outer, 1, 0, rows, skin_.compression}, {Layer::outer, Layer::outer, 0, 1, columns, skin_.compression}};
     part.notes = {fmt::format("k = {:.4g} N/mm between rows, {:.4g} N/mm between columns", rows, columns)};
     if (!k.isIsotropic) part.notes.push_back("the cells are too oblong for an isotropic skin: bring row and column spacing closer");
     return part;

@@ -10,7 +10,8 @@
 namespace pectora {
 namespace {
 
-constexpr int kFineColumns = 400;   // points of a pleura level that rays are cut with
+constexpr int kFineColumns = 400;     // points of a pleura level that rays are cut with
+constexpr double kFrontPart = 0.6;    // part of the chest's width over which rays run straight forwards
 
 // Lowest and highest z of ribs and sternum, with a margin.
 std::pair<double, double> cageExtent(const RibCage& cage, double margin) {
@@ -87,10 +88,12 @@ void buildLayers(const LayerSettings& settings, Scene& scene) {
   for (int r = 0; r < scene.rows; ++r) {
     const double z = skin.front().z + extent * r / (scene.rows - 1);
     const std::vector<Vec3> outer = levelAt(skin, z, scene.columns), inner = levelAt(pleura, z, kFineColumns);
+    // Rays start on the middle part of the coronal line: straight forwards over the front, fanning out at the sides.
     const Vec3 center = (outer.front() + outer.back()) / 2;
+    const double reach = kFrontPart * std::abs(inner.back().x - inner.front().x) / 2;
     for (const Vec3& p : outer) {
       scene.outer.push_back(p);
-      scene.inner.push_back(facingPoint(inner, p, center));
+      scene.inner.push_back(facingPoint(inner, p, center + Vec3{std::clamp(p.x - center.x, -reach, reach), 0, 0}));
     }
   }
 

@@ -12,8 +12,8 @@ struct LayerSettings {
 };
 
 /// Fills rows, columns, outer, inner, masses and spacings of `scene` from the layers of scene.cage->anatomy: rows at equal
-/// levels within the longest run of unclipped skin, skin points at equal arc length on each, pleura points where the line
-/// from the middle of the level's ends to the skin point leaves the pleura.
+/// levels within the longest run of unclipped skin, skin points at equal arc length on each, pleura points where a ray
+/// through the skin point, straight forwards over the front and fanning out at the sides, leaves the pleura.
 /// Throws Error if the anatomy has too little of the layers.
 void buildLayers(const LayerSettings& settings, Scene& scene);
 

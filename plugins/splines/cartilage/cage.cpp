@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pectora {
 namespace {
 
+constexpr int kControls = 8, kSamples = 40;   // of a cartilage
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
@@ -29,6 +31,39 @@ Vec3 arrivalDirection(Side side, int rib) {
   const double steep = std::clamp((rib - 2) * 14.0, 0.0, 70.0) * M_PI / 180;
   const double medial = side == Side::right ? 1 : -1;
   return {medial * std::cos(steep), -0.1, std::sin(steep)};
+}
+
+// y of the front of a layer's slice at x: the most forward crossing; NaN beyond its ends.
+double frontAt(const LayerSlice& slice, double x) {
+  double front = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 1; i < slice.points.size(); ++i) {
+    const Vec3 a = slice.points[i - 1], b = slice.points[i];
+    if ((a.x <= x) == (b.x <= x)) continue;
+    const double y = std::lerp(a.y, b.y, (x - a.x) / (b.x - a.x));
+    if (!(front <= y)) front = y;
+  }
+  return front;
+}
+
+// y of the pleura's front at x and z; NaN outside of the layer.
+double pleuraFront(const std::vector<LayerSlice>& pleura, double x, double z) {
+  const auto above = std::lower_bound(pleura.begin(), pleura.end(), z, [](const LayerSlice& s, double level) { return s.z < level; });
+  if (above == pleura.begin() || above == pleura.end()) return std::numeric_limits<double>::quiet_NaN();
+  const LayerSlice &high = *above, &low = *(above - 1);
+  return std::lerp(frontAt(low, x), frontAt(high, x), (z - low.z) / (high.z - low.z));
+}
+
+// The cubic's course seen from the front, with the depth of the pleura where that is known all along.
+Curve alongPleura(const Curve& cubic, const std::vector<LayerSlice>& pleura) {
+  std::vector<Vec3> points = cubic.sample(kSamples);
+  std::vector<double> depth;
+  for (const Vec3& p : points) depth.push_back(pleuraFront(pleura, p.x, p.z));
+  const bool isKnown = std::all_of(depth.begin(), depth.end(), [](double d) { return std::isfinite(d); });
+  if (isKnown) {
+    const double first = points.front().y - depth.front(), last = points.back().y - depth.back();
+    for (int i = 0; i < kSamples; ++i) points[i].y = depth[i] + std::lerp(first, last, double(i) / (kSamples - 1));
+  }
+  return fitCurve(points, kControls);
 }
 
 }  // namespace
@@ -67,7 +102,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& se
           continue;
         }
         const Vec3 arrival = normalized(arrivalDirection(side, number));
-        cartilage.curve = hermiteCurve(start, along, notch->position, arrival, settings.handle);
+        cartilage.curve = alongPleura(hermiteCurve(start, along, notch->position, arrival, settings.handle), anatomy->pleura);
       } else {
         const Cartilage* above = findCartilage(cage, side, number - 1);
         if (!above) {
@@ -77,8 +112,8 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& se
         cartilage.joins = number - 1;
         cartilage.joinsAt = 0.5;
         const Vec3 end = above->curve.at(cartilage.joinsAt);
-        cartilage.curve = hermiteCurve(start, along, end, normalized(above->curve.derivative(cartilage.joinsAt)),
-                                       settings.handle);
+        const Vec3 arrival = normalized(above->curve.derivative(cartilage.joinsAt));
+        cartilage.curve = alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura);
       }
       cage.cartilages.push_back(std::move(cartilage));
     }

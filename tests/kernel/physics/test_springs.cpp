@@ -29,7 +29,7 @@ System crookedGrid(int rows, int columns, int anchors) {
 }
 
 std::vector<StencilSpring> someStencil() {
-  return {{Layer::outer, Layer::outer, 1, 0, 0.3}, {Layer::outer, Layer::outer, 0, 1, 0.4}, {Layer::outer, Layer::outer, -1, 1, 0.1},
+  return {{Layer::outer, Layer::outer, 1, 0, 0.3}, {Layer::outer, Layer::outer, 0, 1, 0.4}, {Layer::outer, Layer::outer, -1, 1, 0.1, 0.2},
           {Layer::outer, Layer::outer, 2, 2, 0.05}, {Layer::outer, Layer::inner, 0, 0, 0.2}, {Layer::outer, Layer::inner, -2, 1, 0.07}};
 }
 
@@ -90,9 +90,11 @@ TEST(LatticeTerm, HasNoEnergyAndNoForceAtRest) {
 
 TEST(LatticeTerm, EqualsTheSameSpringsGivenOneByOne) {
   const System system = crookedGrid(5, 6, 0);
-  const auto lattice = makeLatticeTerm("all", system, someStencil());
+  std::vector<StencilSpring> stencil = someStencil();
+  std::erase_if(stencil, [](const StencilSpring& s) { return s.compression < 1; });
+  const auto lattice = makeLatticeTerm("all", system, stencil);
   std::vector<NodeSpring> list;
-  for (const StencilSpring& s : someStencil())
+  for (const StencilSpring& s : stencil)
     for (int r = 0; r < 5; ++r)
       for (int c = 0; c < 6; ++c) {
         const int row = r + s.rows, column = c + s.columns;
@@ -154,6 +156,16 @@ TEST(LatticeTerm, StaysFiniteWhenPointsCoincide) {
   EXPECT_TRUE(std::isfinite(term->evaluate(x, gradient, largest)));
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(isFinite(gradient[i]));
   EXPECT_GT(largest, 0);
+}
+
+TEST(LatticeTerm, ASpringWithoutCompressionPullsAndDoesNotPush) {
+  const System system = crookedGrid(1, 2, 0);
+  const auto thread = makeLatticeTerm("thread", system, {{Layer::outer, Layer::outer, 0, 1, 0.5, 0}});
+  NodeVectors x = system.rest;
+  x.x[1] += 3;
+  EXPECT_GT(thread->energy(x), 1);
+  x.x[1] -= 6;
+  EXPECT_EQ(thread->energy(x), 0);
 }
 
 TEST(Drive, IsLinearBetweenItsFrames) {

@@ -8,7 +8,15 @@ using namespace pectora;
 
 namespace {
 
-Curve piece(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return {3, clampedKnots(4, 3), {a, b, c, d}}; }
+// A bowed curve of eight control points from a to d with b and c near its ends' tangents.
+Curve piece(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  Curve curve{3, clampedKnots(8, 3), {}};
+  for (int i = 0; i < 8; ++i) {
+    const double t = i / 7.0, s = 1 - t;
+    curve.controls.push_back(a * (s * s * s) + b * (3 * s * s * t) + c * (3 * s * t * t) + d * (t * t * t));
+  }
+  return curve;
+}
 
 // Cartilage 7 sags from the rib to the sternum at the midline; cartilage 8 joins it half way.
 RibCage smallCage() {
@@ -33,7 +41,7 @@ TEST(FollowSternum, LeavesCartilagesAtRestWhenNothingMoves) {
   const RibCage cage = smallCage();
   const auto moved = followSternum(cage, {});
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    for (int j = 0; j < 4; ++j) EXPECT_LT(distance(moved[i].curve.controls[j], cage.cartilages[i].curve.controls[j]), 1e-9);
+    for (int j = 0; j < 8; ++j) EXPECT_LT(distance(moved[i].curve.controls[j], cage.cartilages[i].curve.controls[j]), 1e-9);
     EXPECT_NEAR(moved[i].strain, 0, 1e-12);
   }
 }
@@ -47,9 +55,9 @@ TEST(FollowSternum, KeepsTheRibsEndAndItsTangentAndMovesTheOther) {
   EXPECT_LT(distance(moved[0].curve.at(1), rest.at(1) + Vec3{0, -10, 0}), 1e-12);
 }
 
-TEST(FollowSternum, KeepsTheArcLengthWhereTheHandlesCan) {
+TEST(FollowSternum, KeepsTheArcLengthWhereTheBowCan) {
   const RibCage cage = smallCage();
-  const auto moved = followSternum(cage, forward(8));
+  const auto moved = followSternum(cage, {{}, {1, 0, 0}, 0, {-4, 0, 0}});  // away from the rib
   EXPECT_NEAR(moved[0].curve.length(), cage.cartilages[0].curve.length(), 1e-6);
   EXPECT_NEAR(moved[0].strain, 0, 1e-7);
 }
@@ -82,4 +90,11 @@ TEST(Plan, MovesAnchorsSmoothlyFromRestToTheEnd) {
     EXPECT_LT(distance(plan.moved(onSternum, t), onSternum.rest + Vec3{0, -10 * t, 0}), 1e-9);
     EXPECT_EQ(plan.moved(onRib, t), onRib.rest);
   }
+}
+
+TEST(FollowSternum, NeverArchesACartilageThatIsTooLongNow) {
+  const RibCage cage = smallCage();
+  const auto moved = followSternum(cage, {{}, {1, 0, 0}, 0, {12, 0, 0}});  // towards the rib
+  EXPECT_LT(moved[0].strain, 0);
+  for (double u = 0; u <= 1; u += 0.05) EXPECT_GT(moved[0].curve.at(u).y, -101);
 }

@@ -58,7 +58,11 @@ TEST(Layers, LieOnSkinAndPleuraAtTheWantedSpacing) {
   const Scene scene = built(barrel(), 8);
   EXPECT_NEAR(scene.rowSpacing, 8, 0.5);
   EXPECT_NEAR(scene.columnSpacing, 8, 0.5);
-  EXPECT_NEAR(scene.thickness, kSkin - kPleura, 0.1);
+  // Rays cross the wall of 25 mm squarely in front and at the sides, and a little obliquely between.
+  EXPECT_GT(scene.thickness, kSkin - kPleura);
+  EXPECT_LT(scene.thickness, 1.15 * (kSkin - kPleura));
+  const int middle = scene.index(scene.rows / 2, scene.columns / 2);
+  EXPECT_NEAR(distance(scene.outer[middle], scene.inner[middle]), kSkin - kPleura, 0.1);
   for (int i = 0; i < scene.points(); ++i) {
     EXPECT_NEAR(std::hypot(scene.outer[i].x, scene.outer[i].y), kSkin, 0.05);
     EXPECT_NEAR(std::hypot(scene.inner[i].x, scene.inner[i].y), kPleura, 0.05);
@@ -75,7 +79,7 @@ TEST(Layers, WeighWhatTheWallWeighs) {
   for (int i = 0; i < scene.points(); ++i) total += scene.outerMass[i] + scene.innerMass[i];
   // Each point stands for a cell of the skin's grid, so the outer area counts.
   const double area = scene.rowSpacing * scene.columnSpacing * scene.points();
-  EXPECT_NEAR(total, 1060e-9 * area * 25, 0.01 * total);
+  EXPECT_NEAR(total, 1060e-9 * area * scene.thickness, 1e-9 * total);
 }
 
 TEST(Layers, KeepToTheLongestRunOfWholeSkin) {

