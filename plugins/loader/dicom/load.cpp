@@ -62,6 +62,9 @@ void reportValues(const Scan& scan, const Stack& stack, Host& host) {
                           first.intercept, scan.name(stack.slices.front().file), slice.at.slope, slice.at.intercept, scan.name(slice.file)));
     break;
   }
+  const auto isElsewhere = [&](const Slice& s) { return scan.files[s.file].frameOfReference != file.frameOfReference; };
+  if (std::any_of(stack.slices.begin(), stack.slices.end(), isElsewhere))
+    host.info("the slices name different frames of reference; their positions make one regular stack");
   const double padding = file.padding * first.slope + first.intercept;
   if (file.hasPadding && padding < -1024)
     host.info(fmt::format("pixels outside of the reconstruction have the value {:g}; it is kept", padding));

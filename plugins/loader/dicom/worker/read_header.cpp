@@ -39,6 +39,16 @@ bool hasPreamble(const MappedFile& file) {
   return file.size() >= 132 && std::memcmp(file.data() + 128, "DICM", 4) == 0;
 }
 
+// The index of a disc: its class stands in the first elements. GDCM aborts on some, and there is nothing in it to read.
+bool isDirectory(const MappedFile& file) {
+  const std::string_view head(reinterpret_cast<const char*>(file.data()), std::min<std::size_t>(file.size(), 400));
+  constexpr std::string_view kClass = "1.2.840.10008.1.3.10";
+  const std::size_t at = head.find(kClass);
+  if (!hasPreamble(file) || at == std::string_view::npos || at + kClass.size() >= head.size()) return false;
+  const char next = head[at + kClass.size()];
+  return next != '.' && (next < '0' || next > '9');
+}
+
 // Position, orientation, spacing and rescaling where they stand in a data set itself.
 void readPlain(const gdcm::DataSet& set, FrameHeader& frame) {
   if (const auto v = numbersOf(set, {0x0020, 0x0032}); v.size() == 3) {
@@ -151,6 +161,10 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
     header.kind = FileKind::foreign;
     return header;
   }
+  if (isDirectory(file)) {
+    header.kind = FileKind::noImage;
+    return header;
+  }
   copyText(header.damage, isDicom ? "has a header that cannot be read" : "is not readable as DICOM");
   gdcm::Reader reader;
   std::size_t offset = 0;
@@ -168,8 +182,10 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
   const std::string modality = textOf(set, {0x0008, 0x0060}), series = textOf(set, {0x0020, 0x000e});
   // GDCM reads many a file as an almost empty data set.
   const bool hasImage = set.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || set.FindDataElement(gdcm::Tag(0x0028, 0x0011));
-  const bool isDirectory = set.FindDataElement(gdcm::Tag(0x0004, 0x1220));
-  if (!hasImage && !isDirectory && modality.empty() && !header.sopClass[0]) return header;
+  if (!hasImage && modality.empty() && !header.sopClass[0]) {
+    copyText(header.damage, "neither holds an image nor says what it is");
+    return header;
+  }
 
   header.damage[0] = 0;
   copyText(header.modality, modality);
