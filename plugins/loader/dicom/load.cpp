@@ -114,8 +114,8 @@ Volume load(const std::vector<std::string>& paths, const LoadOptions& options, H
   }
   const std::size_t chosen = chooseSeries(series, options.series);
   reportSeries(series, chosen, !options.series.empty(), host);
-  const Stack stack = arrange(scan, series[chosen]);
   reportOthers(scan, series[chosen], host);
+  const Stack stack = arrange(scan, series[chosen]);
   reportValues(scan, stack, host);
   if (stack.isTilted() && !options.resamplesTilt)
     throw Error("the gantry was tilted: the slices are not perpendicular to the line of their positions").of("resample_tilt")

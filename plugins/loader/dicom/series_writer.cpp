@@ -56,15 +56,15 @@ std::string decimals(std::initializer_list<double> values) {
 
 class Elements {
  public:
-  Elements(gdcm::DataSet& set, bool swapsBytes) : set_(set), swapsBytes_(swapsBytes) {}
+  explicit Elements(gdcm::DataSet& set) : set_(set) {}
   void text(gdcm::Tag tag, gdcm::VR::VRType vr, std::string value) {
     if (value.size() % 2 != 0) value += vr == gdcm::VR::UI ? '\0' : ' ';
     put(tag, vr, value.data(), value.size());
   }
   void number(gdcm::Tag tag, gdcm::VR::VRType vr, int value) {
+    // GDCM swaps words to the file's byte order itself.
     const auto word = std::uint16_t(value);
-    const char bytes[2] = {char(word & 0xff), char(word >> 8)}, swapped[2] = {bytes[1], bytes[0]};
-    put(tag, vr, swapsBytes_ ? swapped : bytes, 2);
+    put(tag, vr, reinterpret_cast<const char*>(&word), 2);
   }
 
  private:
@@ -75,7 +75,6 @@ class Elements {
     set_.Replace(element);
   }
   gdcm::DataSet& set_;
-  bool swapsBytes_;
 };
 
 // Stored values of one slice.
@@ -88,8 +87,6 @@ std::vector<std::uint16_t> storedPixels(const Volume& volume, int k, const Write
       throw Error("a value does not fit into 12 bits").given(fmt::format("{} HU", hu[i])).allowed(fmt::format("{} to {} HU", kIntercept, kHighest));
     stored[i] = std::uint16_t(options.isTwelveBit ? hu[i] - kIntercept : hu[i]);
   }
-  if (options.storage == Storage::explicitBig)
-    for (std::uint16_t& word : stored) word = std::uint16_t(word << 8 | word >> 8);
   return stored;
 }
 
@@ -101,19 +98,20 @@ gdcm::DataElement pixelElement(const std::vector<std::uint16_t>& stored) {
 }
 
 gdcm::DataElement compressed(const gdcm::DataElement& raw, const Grid& grid, const WriteOptions& options) {
-  gdcm::Image image;
-  image.SetNumberOfDimensions(2);
+  // Counted by reference, so it must not live on the stack.
+  const gdcm::SmartPointer<gdcm::Image> image = new gdcm::Image;
+  image->SetNumberOfDimensions(2);
   const unsigned size[2] = {unsigned(grid.size[0]), unsigned(grid.size[1])};
-  image.SetDimensions(size);
+  image->SetDimensions(size);
   gdcm::PixelFormat format(options.isTwelveBit ? gdcm::PixelFormat::UINT16 : gdcm::PixelFormat::INT16);
   if (options.isTwelveBit) format.SetBitsStored(12);
-  image.SetPixelFormat(format);
-  image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-  image.SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
-  image.SetDataElement(raw);
+  image->SetPixelFormat(format);
+  image->SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  image->SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
+  image->SetDataElement(raw);
   gdcm::ImageChangeTransferSyntax change;
   change.SetTransferSyntax(kKinds[int(options.storage)].syntax);
-  change.SetInput(image);
+  change.SetInput(*image);
   if (!change.Change()) throw Error("a slice cannot be compressed", ErrorKind::runFailed).given(kKinds[int(options.storage)].name);
   return change.GetOutput().GetDataElement();
 }
@@ -125,7 +123,7 @@ void writeSlice(const Volume& volume, int k, int number, const std::string& path
   gdcm::Writer writer;
   writer.CheckFileMetaInformationOff();
   gdcm::DataSet& set = writer.GetFile().GetDataSet();
-  Elements put(set, options.storage == Storage::explicitBig);
+  Elements put(set);
   const std::string instance = uidOf(options.seed, fmt::format("slice {}", k));
   const char* objectClass = options.modality == "MR" ? "1.2.840.10008.5.1.4.1.1.4" : "1.2.840.10008.5.1.4.1.1.2";
   const Vec3 position = g.toPatient({0, 0, double(k)});
@@ -173,7 +171,7 @@ void writeSlice(const Volume& volume, int k, int number, const std::string& path
   set.Replace(kind.isCompressed ? compressed(raw, g, options) : raw);
 
   gdcm::FileMetaInformation& meta = writer.GetFile().GetHeader();
-  Elements metaPut(meta, false);
+  Elements metaPut(meta);
   const char version[2] = {0, 1};
   gdcm::DataElement versionElement(gdcm::Tag(0x0002, 0x0001));
   versionElement.SetVR(VR::OB);

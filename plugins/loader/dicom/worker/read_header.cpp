@@ -117,8 +117,8 @@ void checkPixels(const MappedFile& file, std::size_t offset, FileHeader& header)
   if (!isUncompressed && syntax.rfind("1.2.840.10008.", 0) == 0)
     return copyText(header.damage, "has uncompressed pixels but says that they are compressed");
   const std::uint64_t needed = std::uint64_t(header.framePixels()) * header.frames * header.samples * header.bitsAllocated / 8;
-  if (offset + std::max(length, needed) > file.size()) return copyText(header.damage, "is truncated within its pixels");
   if (length < needed) return copyText(header.damage, "has fewer pixels than its rows and columns need");
+  if (offset + length > file.size()) return copyText(header.damage, "is truncated within its pixels");
   if (length > needed + 1) return copyText(header.damage, "has more pixels than its rows and columns need");
   header.isRaw = isUncompressed && header.samples == 1 && (header.bitsAllocated == 8 || header.bitsAllocated == 16);
   header.isBigEndian = isBig;
