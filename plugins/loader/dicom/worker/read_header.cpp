@@ -15,6 +15,8 @@ namespace pectora::dicom {
 namespace {
 
 const gdcm::Tag kPixelData(0x7fe0, 0x0010);
+// Classes of CT images begin so: plain, enhanced, converted.
+constexpr std::string_view kCtClass = "1.2.840.10008.5.1.4.1.1.2";
 
 template <std::size_t N>
 void copyText(char (&to)[N], const std::string& from) {
@@ -187,6 +189,11 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
     return header;
   }
 
+  const std::string_view objectClass = header.sopClass;
+  if (!hasImage && (objectClass == kCtClass || objectClass.substr(0, kCtClass.size() + 1) == std::string(kCtClass) + ".")) {
+    copyText(header.damage, "says that it is a CT image but has no rows and columns");
+    return header;
+  }
   header.damage[0] = 0;
   copyText(header.modality, modality);
   header.series = series.empty() ? 0 : hashUid(series);
