@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sys/mman.h>
 
 namespace pectora::dicom {
 namespace {
@@ -70,6 +71,16 @@ void reportValues(const Scan& scan, const Stack& stack, Host& host) {
     host.info(fmt::format("pixels outside of the reconstruction have the value {:g}; it is kept", padding));
 }
 
+// Room for a volume in large pages: a third of the time of loading goes into touching small ones for the first time.
+void makeRoom(std::vector<std::int16_t>& hu, std::size_t voxels) {
+  constexpr std::uintptr_t kPage = 4096;
+  hu.reserve(voxels);
+  const auto begin = (reinterpret_cast<std::uintptr_t>(hu.data()) + kPage - 1) / kPage * kPage;
+  const auto end = reinterpret_cast<std::uintptr_t>(hu.data() + voxels) / kPage * kPage;
+  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  hu.resize(voxels);
+}
+
 void flipRows(Volume& volume) {
   const Grid& g = volume.grid;
   parallelFor(std::size_t(g.size[2]), [&](std::size_t k) {
@@ -123,7 +134,7 @@ Volume load(const std::vector<std::string>& paths, const LoadOptions& options, H
 
   Volume volume;
   volume.grid = stack.grid;
-  volume.hu.resize(stack.grid.voxels());
+  makeRoom(volume.hu, stack.grid.voxels());
   std::vector<FrameTarget> targets;
   for (std::size_t k = 0; k < stack.slices.size(); ++k) targets.push_back({stack.slices[k].file, stack.slices[k].frame, k});
   readPixels(scan, targets, stack.grid.sliceVoxels(), volume.hu.data(), helpers, host);
