@@ -89,11 +89,10 @@ struct Helpers::State {
   std::vector<Helper> helpers;
 
   ~State() {
-    for (Helper& helper : helpers) {
-      if (helper.process <= 0) continue;
-      kill(helper.process, SIGKILL);
-      waitpid(helper.process, nullptr, 0);
-    }
+    for (const Helper& helper : helpers)
+      if (helper.process > 0) kill(helper.process, SIGKILL);
+    for (const Helper& helper : helpers)
+      if (helper.process > 0) waitpid(helper.process, nullptr, 0);
   }
 };
 
@@ -120,7 +119,10 @@ Helpers::~Helpers() = default;
 
 void Helpers::start() {
   State& s = *state_;
-  const int processes = std::clamp(s.options.processes, 1, std::min<int>(kMostWorkers, int(s.scan.paths.size())));
+  // To start a process takes as long as to read some files.
+  constexpr std::size_t kFilesWorthAProcess = 8;
+  const int worthwhile = int(std::min<std::size_t>(kMostWorkers, 1 + s.scan.paths.size() / kFilesWorthAProcess));
+  const int processes = std::clamp(s.options.processes, 1, worthwhile);
   for (int i = 0; i < processes; ++i) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)

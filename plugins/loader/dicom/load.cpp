@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sys/mman.h>
 
 namespace pectora::dicom {
 namespace {
@@ -62,9 +63,22 @@ void reportValues(const Scan& scan, const Stack& stack, Host& host) {
                           first.intercept, scan.name(stack.slices.front().file), slice.at.slope, slice.at.intercept, scan.name(slice.file)));
     break;
   }
+  const auto isElsewhere = [&](const Slice& s) { return scan.files[s.file].frameOfReference != file.frameOfReference; };
+  if (std::any_of(stack.slices.begin(), stack.slices.end(), isElsewhere))
+    host.info("the slices name different frames of reference; their positions make one regular stack");
   const double padding = file.padding * first.slope + first.intercept;
   if (file.hasPadding && padding < -1024)
     host.info(fmt::format("pixels outside of the reconstruction have the value {:g}; it is kept", padding));
+}
+
+// Room for a volume in large pages: a third of the time of loading goes into touching small ones for the first time.
+void makeRoom(std::vector<std::int16_t>& hu, std::size_t voxels) {
+  constexpr std::uintptr_t kPage = 4096;
+  hu.reserve(voxels);
+  const auto begin = (reinterpret_cast<std::uintptr_t>(hu.data()) + kPage - 1) / kPage * kPage;
+  const auto end = reinterpret_cast<std::uintptr_t>(hu.data() + voxels) / kPage * kPage;
+  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  hu.resize(voxels);
 }
 
 void flipRows(Volume& volume) {
@@ -111,8 +125,8 @@ Volume load(const std::vector<std::string>& paths, const LoadOptions& options, H
   }
   const std::size_t chosen = chooseSeries(series, options.series);
   reportSeries(series, chosen, !options.series.empty(), host);
-  const Stack stack = arrange(scan, series[chosen]);
   reportOthers(scan, series[chosen], host);
+  const Stack stack = arrange(scan, series[chosen]);
   reportValues(scan, stack, host);
   if (stack.isTilted() && !options.resamplesTilt)
     throw Error("the gantry was tilted: the slices are not perpendicular to the line of their positions").of("resample_tilt")
@@ -120,7 +134,7 @@ Volume load(const std::vector<std::string>& paths, const LoadOptions& options, H
 
   Volume volume;
   volume.grid = stack.grid;
-  volume.hu.resize(stack.grid.voxels());
+  makeRoom(volume.hu, stack.grid.voxels());
   std::vector<FrameTarget> targets;
   for (std::size_t k = 0; k < stack.slices.size(); ++k) targets.push_back({stack.slices[k].file, stack.slices[k].frame, k});
   readPixels(scan, targets, stack.grid.sliceVoxels(), volume.hu.data(), helpers, host);

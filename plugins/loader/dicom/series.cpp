@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace pectora::dicom {
 namespace {
@@ -58,13 +59,16 @@ std::string orientationObstacle(const FrameHeader& frame) {
 std::string Series::code() const { return fmt::format("{:08x}", std::uint32_t(id ^ id >> 32)); }
 
 std::vector<Series> groupSeries(const Scan& scan) {
-  std::map<std::uint64_t, Series> groups;
+  std::map<std::pair<std::uint64_t, std::string>, Series> groups;
   for (std::size_t i = 0; i < scan.files.size(); ++i) {
     const FileHeader& file = scan.files[i];
     if (file.kind != FileKind::image && (file.kind != FileKind::noImage || file.series == 0)) continue;
-    Series& series = groups[file.series];
+    // A report or plan may bear the UID of the images; a CT without pixels is a damaged slice of its series.
+    const std::string kind = kindOf(file);
+    const bool isApart = file.kind == FileKind::noImage && !kind.empty() && kind != "CT";
+    Series& series = groups[{file.series, isApart ? kind : ""}];
     series.id = file.series;
-    if (series.what.empty()) series.what = kindOf(file);
+    if (series.what.empty()) series.what = kind;
     if (file.isLocalizer) {
       ++series.localizers;
       continue;
@@ -75,7 +79,7 @@ std::vector<Series> groupSeries(const Scan& scan) {
       series.slices.push_back({i, f, scan.frames[file.firstFrame + std::uint32_t(f)]});
   }
   std::vector<Series> sorted;
-  for (auto& [id, series] : groups) {
+  for (auto& [key, series] : groups) {
     series.obstacle = obstacleOf(series, scan);
     sorted.push_back(std::move(series));
   }
@@ -117,7 +121,9 @@ std::size_t chooseSeries(const std::vector<Series>& series, const std::string& w
   if (s.obstacle.empty()) return chosen;
   if (!wanted.empty()) throw Error("this series " + s.obstacle).of("series").given(wanted);
   std::string found;
-  for (const Series& other : series) found += (found.empty() ? "" : "; ") + ("one " + other.obstacle);
+  std::set<std::string> told;
+  for (const Series& other : series)
+    if (told.insert(other.obstacle).second) found += (found.empty() ? "" : "; ") + ("one " + other.obstacle);
   throw Error("there is no axial CT series: " + found).of("path").advise("Export the axial CT series of the chest, without reformats");
 }
 

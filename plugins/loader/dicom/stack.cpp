@@ -73,7 +73,6 @@ void checkAlike(const Scan& scan, const Series& series) {
              fmt::format("{} of {} bits{}", a.bitsStored, a.bitsAllocated, a.isSigned ? ", signed" : ""));
     if (std::strcmp(a.modality, b.modality) != 0) refuse("modality", b.modality, a.modality);
     if (std::strcmp(a.sopClass, b.sopClass) != 0) refuse("kind of object", b.sopClass, a.sopClass);
-    if (a.frameOfReference != b.frameOfReference) refuse("frame of reference", "another", "one");
     const FrameHeader &f = first.at, &g = slice.at;
     if (distance(rowOf(f), rowOf(g)) > kDirectionTolerance || distance(columnOf(f), columnOf(g)) > kDirectionTolerance)
       refuse("orientation", fmt::format("row {:.3f} {:.3f} {:.3f}", g.orientation[0], g.orientation[1], g.orientation[2]),

@@ -26,7 +26,19 @@ void* mapShared(int descriptor) {
   return memory == MAP_FAILED ? nullptr : memory;
 }
 
+// A damaged length makes GDCM ask for gigabytes, and clear them, before it sees that the file is short. So a file gets
+// memory in proportion to what is in it. (Sanitizers need more than any limit.)
+void limitMemory([[maybe_unused]] const char* path, [[maybe_unused]] std::uint64_t pixelBytes) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  struct stat status {};
+  const std::uint64_t fileBytes = stat(path, &status) == 0 ? std::uint64_t(status.st_size) : 0;
+  const rlimit limit{(std::uint64_t(128) << 20) + 4 * (fileBytes + pixelBytes), RLIM_INFINITY};
+  setrlimit(RLIMIT_DATA, &limit);
+#endif
+}
+
 void scanFile(Board& board, std::uint32_t number, const char* path) {
+  limitMemory(path, 0);
   std::vector<FrameHeader> frames;
   FileHeader header = readHeader(path, frames);
   const std::uint32_t first = board.framesUsed.fetch_add(std::uint32_t(frames.size()));
@@ -52,6 +64,7 @@ void decodeOne(Board& board, std::int16_t* slices, std::uint32_t number, const c
     isWanted = isWanted || frame.target >= 0;
   }
   if (!isWanted) return;
+  limitMemory(path, 2 * header.framePixels() * std::uint64_t(header.frames));
   std::string damage;
   try {
     damage = decodeFile(path, header, frames, targets);
@@ -68,9 +81,8 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   prctl(PR_SET_DUMPABLE, 0);
-  const rlimit none{0, 0}, memory{std::uint64_t(24) << 30, std::uint64_t(24) << 30};
+  const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
-  setrlimit(RLIMIT_AS, &memory);
   auto* board = argc == 2 ? static_cast<Board*>(mapShared(kBoardDescriptor)) : nullptr;
   if (!board) {
     std::fputs("pectora-dicom is a part of loader.dicom and is started by it.\n", stderr);

@@ -15,6 +15,8 @@ namespace pectora::dicom {
 namespace {
 
 const gdcm::Tag kPixelData(0x7fe0, 0x0010);
+// Classes of CT images begin so: plain, enhanced, converted.
+constexpr std::string_view kCtClass = "1.2.840.10008.5.1.4.1.1.2";
 
 template <std::size_t N>
 void copyText(char (&to)[N], const std::string& from) {
@@ -37,6 +39,16 @@ bool isForeign(const MappedFile& file) {
 
 bool hasPreamble(const MappedFile& file) {
   return file.size() >= 132 && std::memcmp(file.data() + 128, "DICM", 4) == 0;
+}
+
+// The index of a disc: its class stands in the first elements. GDCM aborts on some, and there is nothing in it to read.
+bool isDirectory(const MappedFile& file) {
+  const std::string_view head(reinterpret_cast<const char*>(file.data()), std::min<std::size_t>(file.size(), 400));
+  constexpr std::string_view kClass = "1.2.840.10008.1.3.10";
+  const std::size_t at = head.find(kClass);
+  if (!hasPreamble(file) || at == std::string_view::npos || at + kClass.size() >= head.size()) return false;
+  const char next = head[at + kClass.size()];
+  return next != '.' && (next < '0' || next > '9');
 }
 
 // Position, orientation, spacing and rescaling where they stand in a data set itself.
@@ -107,8 +119,8 @@ void checkPixels(const MappedFile& file, std::size_t offset, FileHeader& header)
   if (!isUncompressed && syntax.rfind("1.2.840.10008.", 0) == 0)
     return copyText(header.damage, "has uncompressed pixels but says that they are compressed");
   const std::uint64_t needed = std::uint64_t(header.framePixels()) * header.frames * header.samples * header.bitsAllocated / 8;
-  if (offset + std::max(length, needed) > file.size()) return copyText(header.damage, "is truncated within its pixels");
   if (length < needed) return copyText(header.damage, "has fewer pixels than its rows and columns need");
+  if (offset + length > file.size()) return copyText(header.damage, "is truncated within its pixels");
   if (length > needed + 1) return copyText(header.damage, "has more pixels than its rows and columns need");
   header.isRaw = isUncompressed && header.samples == 1 && (header.bitsAllocated == 8 || header.bitsAllocated == 16);
   header.isBigEndian = isBig;
@@ -151,6 +163,10 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
     header.kind = FileKind::foreign;
     return header;
   }
+  if (isDirectory(file)) {
+    header.kind = FileKind::noImage;
+    return header;
+  }
   copyText(header.damage, isDicom ? "has a header that cannot be read" : "is not readable as DICOM");
   gdcm::Reader reader;
   std::size_t offset = 0;
@@ -168,9 +184,16 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
   const std::string modality = textOf(set, {0x0008, 0x0060}), series = textOf(set, {0x0020, 0x000e});
   // GDCM reads many a file as an almost empty data set.
   const bool hasImage = set.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || set.FindDataElement(gdcm::Tag(0x0028, 0x0011));
-  const bool isDirectory = set.FindDataElement(gdcm::Tag(0x0004, 0x1220));
-  if (!hasImage && !isDirectory && modality.empty() && !header.sopClass[0]) return header;
+  if (!hasImage && modality.empty() && !header.sopClass[0]) {
+    copyText(header.damage, "neither holds an image nor says what it is");
+    return header;
+  }
 
+  const std::string_view objectClass = header.sopClass;
+  if (!hasImage && (objectClass == kCtClass || objectClass.substr(0, kCtClass.size() + 1) == std::string(kCtClass) + ".")) {
+    copyText(header.damage, "says that it is a CT image but has no rows and columns");
+    return header;
+  }
   header.damage[0] = 0;
   copyText(header.modality, modality);
   header.series = series.empty() ? 0 : hashUid(series);
