@@ -35,7 +35,7 @@ struct Sternum {
   Vec3 jugularNotch;                             ///< cranial end of the manubrium
   Vec3 manubriosternalJoint;                     ///< angle of Louis
   Vec3 xiphisternalJoint;                        ///< caudal end of the body
-  Vec3 deepest;                                  ///< most posterior point of the front surface of the body
+  Vec3 deepest;                                  ///< most posterior point of the front surface of the body's caudal half
   double tiltDeg = 0;                            ///< body axis against the z axis, in the sagittal plane
   double torsionDeg = 0;                         ///< body's transverse axis against x; positive: left side deeper
   std::vector<Notch> notches;

@@ -148,13 +148,15 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
   if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
   const UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
   std::vector<double> radius = fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
+  const std::vector<double> bonySurface = radius;
   for (int round = 0; round < 5; ++round) {
     if (step) step(0.4 + 0.1 * round);
     std::vector<WallSample> samples;
     std::vector<char> hasLung(std::size_t(slices) * angles, 0);
     for (const WallSample& sample : all) {
       const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
-      if (sample.radius < radius[at] - settings.deepestMm) continue;
+      // Lung behind an effusion lies ever further in: the rounds may not follow it.
+      if (sample.radius < radius[at] - settings.deepestMm || sample.radius < bonySurface[at] - 2 * settings.deepestMm) continue;
       samples.push_back(sample);
       hasLung[at] = 1;
     }

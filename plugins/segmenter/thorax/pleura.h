@@ -66,7 +66,8 @@ struct PleuraSettings {
 
 /// The inner wall in slices firstSlice to lastSlice: radius[(slice - firstSlice) * kAngles + n]. A first surface goes
 /// through the bony wall alone (or, if there is none, through all lung); lung within `deepestMm` of it, or outside it,
-/// then joins it with a greater weight, and so four times more from the new surface. The last surface is cut back to
+/// then joins it with a greater weight, and so four times more from the new surface, but never further inside the first one than
+/// twice that. The last surface is cut back to
 /// `leastThicknessMm` inside the skin.
 std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,
                                const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,

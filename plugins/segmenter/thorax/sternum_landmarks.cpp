@@ -68,10 +68,11 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
   }
   sternum.manubriosternalJoint = sternum.axis[joint];
 
-  // Deepest point of the front surface of the body, tilt, torsion.
-  std::size_t deepest = joint;
+  // Deepest point of the front surface of the body's caudal half (a normal sternum comes forward from top to bottom, and its
+  // deepest point is then the middle), tilt, torsion.
+  std::size_t deepest = (joint + xiphoid) / 2;
   double deepestY = -1e300;
-  for (std::size_t n = joint; n <= xiphoid; ++n) {
+  for (std::size_t n = deepest; n <= xiphoid; ++n) {
     const double y = frontAt(slices[n].contour, sternum.axis[n].x);
     if (y < 1e299 && y > deepestY) deepestY = y, deepest = n;
   }

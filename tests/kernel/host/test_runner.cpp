@@ -1,5 +1,7 @@
 #include "tests/kernel/host/helpers.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <fstream>
 #include <thread>
@@ -12,7 +14,7 @@ namespace {
 double runNumber(const Handle& handle) { return dynamic_cast<const Volume&>(*handle.value).grid.origin.x; }
 
 std::string temporaryFile(const std::string& content) {
-  const std::string path = testing::TempDir() + "/pectora_runner_test.bin";
+  const std::string path = testing::TempDir() + "/pectora_runner_test_" + std::to_string(getpid()) + ".bin";
   std::ofstream(path, std::ios::binary) << content;
   return path;
 }

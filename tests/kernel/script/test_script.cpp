@@ -2,6 +2,9 @@
 
 #include "tests/kernel/host/helpers.h"
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -20,7 +23,10 @@ struct Script : TestRunner {
   ScriptEngine engine{runner, registry, cancel, options()};
 
   static std::string write(const std::string& code, const std::string& name = "test.lua") {
-    const std::string path = testing::TempDir() + "/" + name;
+    // A folder for each process: tests run side by side.
+    const std::string folder = testing::TempDir() + "/pectora_script_" + std::to_string(getpid());
+    std::filesystem::create_directories(folder);
+    const std::string path = folder + "/" + name;
     std::ofstream(path, std::ios::binary) << code;
     return path;
   }
