@@ -124,6 +124,7 @@ class Files final : public Stage {
   }
 
   void writeSummary(const Inputs& inputs, const std::vector<Handle>& all) {
+    const std::string path = file("summary.json");
     Json json;
     json["about"] = "Pectora: research software, not a medical device";
     json["coordinates"] = "DICOM patient coordinates (LPS), mm";
@@ -141,7 +142,7 @@ class Files final : public Stage {
     json["files"] = report_->files;
     json["provenance"] = provenanceJson(all);
     json["timing"] = timingJson(all);
-    writeFile(file("summary.json"), json.dump(2) + "\n");
+    writeFile(path, json.dump(2) + "\n");
   }
 
   std::string path_;
