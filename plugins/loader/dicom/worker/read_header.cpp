@@ -8,8 +8,10 @@
 #include <gdcmReader.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <set>
+#include <string_view>
 
 namespace pectora::dicom {
 namespace {
