@@ -13,8 +13,10 @@
 #include <gdcmWriter.h>
 
 #include <algorithm>
+#include <fstream>
 #include <numeric>
 #include <random>
+#include <sstream>
 
 namespace pectora::dicom {
 namespace {
@@ -183,8 +185,15 @@ void writeSlice(const Volume& volume, int k, int number, const std::string& path
   metaPut.text({0x0002, 0x0012}, VR::UI, "2.25.80101116111114097");
   metaPut.text({0x0002, 0x0013}, VR::SH, "PECTORA");
   meta.SetDataSetTransferSyntax(kind.syntax);
-  writer.SetFileName(path.c_str());
-  if (!writer.Write()) throw Error("a slice cannot be written", ErrorKind::runFailed).at(path);
+  // By way of memory, because GDCM does not notice a full disk.
+  std::ostringstream bytes;
+  writer.SetStream(bytes);
+  const bool isMade = writer.Write();
+  std::ofstream file(path, std::ios::binary);
+  const std::string_view all = bytes.view();
+  file.write(all.data(), std::streamsize(all.size()));
+  file.close();
+  if (!isMade || !file) throw Error("a slice cannot be written", ErrorKind::runFailed).at(path).advise("Is the disk full?");
 }
 
 }  // namespace

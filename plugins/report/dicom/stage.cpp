@@ -27,6 +27,7 @@ class FolderAside {
   /// Takes the place of the older folder, if there is one.
   void putInPlace() const {
     const std::string old = path_ + ".old";
+    fs::remove_all(old);
     if (fs::exists(path_)) fs::rename(path_, old);
     publish(path_);
     fs::remove_all(old);
@@ -58,6 +59,15 @@ class WriteDicom final : public Stage {
   Outputs run(const Inputs& inputs, Host& host) override {
     while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
     if (path_.empty()) throw Error("a folder to write into is needed").of("path");
+    try {
+      return {write(inputs, host)};
+    } catch (const fs::filesystem_error& error) {
+      throw Error("the folder cannot be written: " + error.code().message(), ErrorKind::runFailed).of("path").given(path_);
+    }
+  }
+
+ private:
+  std::shared_ptr<const Report> write(const Inputs& inputs, Host& host) const {
     checkFolder(path_);
     const FolderAside folder(path_);
     auto report = std::make_shared<Report>();
@@ -66,10 +76,9 @@ class WriteDicom final : public Stage {
                                       .seed = inputs.handles("ct").front().record->key};
     report->files = dicom::writeSeries(*inputs.get<Volume>("ct"), folder.path(), options, [&] { host.checkCancel(); });
     folder.putInPlace();
-    return {report};
+    return report;
   }
 
- private:
   std::string path_, storage_ = "explicit_le";
   bool isTwelveBit_ = false, shuffles_ = false;
 };

@@ -8,8 +8,10 @@
 #include <gdcmReader.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <set>
+#include <string_view>
 
 namespace pectora::dicom {
 namespace {
@@ -189,8 +191,9 @@ FileHeader readHeader(const char* path, std::vector<FrameHeader>& frames) {
     return header;
   }
 
+  // A header that breaks off may lose the series too; with a series, it is told apart from the others.
   const std::string_view objectClass = header.sopClass;
-  if (!hasImage && (objectClass == kCtClass || objectClass.substr(0, kCtClass.size() + 1) == std::string(kCtClass) + ".")) {
+  if (!hasImage && series.empty() && (objectClass == kCtClass || objectClass.substr(0, kCtClass.size() + 1) == std::string(kCtClass) + ".")) {
     copyText(header.damage, "says that it is a CT image but has no rows and columns");
     return header;
   }

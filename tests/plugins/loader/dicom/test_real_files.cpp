@@ -71,6 +71,7 @@ TEST(Collection, EveryFileAndFolderIsLoadedOrRefusedWithASentence) {
     EXPECT_NE(outcomes[path].find(part), std::string::npos) << path << ": " << outcomes[path];
   };
   expect(tree + "98892001", "loaded");
+  expect(tree + "DICOMDIR", "loaded");
   expect("oriented_rtutils/tests/oriented_data", "loaded");
   expect(tree + "98892001/CT2N", "is a localizer");
   expect(tree + "77654033/CT2", "slices are missing");
