@@ -36,8 +36,11 @@ void writeOut(const std::string& text) {
   std::fflush(stdout);
 }
 
-// Scripts lie in "scripts" beside the folder of the program.
-std::string scriptsFolder() { return (fs::canonical("/proc/self/exe").parent_path().parent_path() / "scripts").string(); }
+// Scripts lie in "share/pectora/scripts" of an installation, or in "scripts" of a build.
+std::string scriptsFolder() {
+  const fs::path prefix = fs::canonical("/proc/self/exe").parent_path().parent_path(), installed = prefix / "share/pectora/scripts";
+  return (fs::exists(installed) ? installed : prefix / "scripts").string();
+}
 
 // A script by its path, or by its name among the installed ones.
 std::string findScript(const std::string& given) {

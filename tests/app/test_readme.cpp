@@ -35,21 +35,32 @@ int exitCode(const std::string& command) {
 
 }  // namespace
 
-TEST(Readme, PluginOfOnesOwnIsAsShortAsPromisedAndAppearsByName) {
-  const std::string code = codeBlock(readFile(fs::path(PECTORA_SOURCE) / "README.md"), "cpp");
+TEST(Readme, PluginOfOnesOwnBuildsAgainstAnInstallationAndAppearsByName) {
+  const std::string readme = readFile(fs::path(PECTORA_SOURCE) / "README.md");
+  const std::string code = codeBlock(readme, "cpp"), list = codeBlock(readme, "cmake");
   EXPECT_LE(std::count(code.begin(), code.end(), '\n'), 27);
   const fs::path folder = fs::path(testing::TempDir()) / ("pectora_readme_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "tether.cpp") << code;
-  const fs::path library = fs::path(PECTORA_PLUGINS).parent_path();
-  ASSERT_EQ(exitCode("c++ -std=c++20 -O1 -shared -fPIC " PECTORA_SANITIZE_FLAGS " -I" PECTORA_SOURCE " " + (folder / "tether.cpp").string() + " -o " +
-                     (folder / "effect.tether.so").string() + " -L" + library.string() + " -lpectora"), 0);
-  const std::string environment = "PECTORA_PLUGIN_PATH=" + folder.string() + " ";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "source");
+  std::ofstream(folder / "source/tether.cpp") << code;
+  std::ofstream(folder / "source/CMakeLists.txt") << list;
+
+  // Install, then build the plugin as its author would.
+  const std::string prefix = (folder / "prefix").string(), build = (folder / "build").string(), log = " >" + (folder / "log.txt").string() + " 2>&1";
+  ASSERT_EQ(exitCode("cmake --install " PECTORA_BUILD " --prefix " + prefix + log), 0) << readFile(folder / "log.txt");
+  ASSERT_EQ(exitCode("cmake -S " + (folder / "source").string() + " -B " + build + " -DCMAKE_CXX_FLAGS='" PECTORA_SANITIZE_FLAGS "' -DCMAKE_PREFIX_PATH=" + prefix + log), 0)
+      << readFile(folder / "log.txt");
+  ASSERT_EQ(exitCode("cmake --build " + build + log), 0) << readFile(folder / "log.txt");
+
+  // The installed program finds it by name.
+  const std::string pectora = "PECTORA_PLUGIN_PATH=" + build + " " + prefix + "/bin/pectora ";
   const fs::path out = folder / "out.txt";
-  ASSERT_EQ(exitCode(environment + PECTORA_PROGRAM " list > " + out.string()), 0);
+  ASSERT_EQ(exitCode(pectora + "list > " + out.string()), 0);
   EXPECT_NE(readFile(out).find("effect.tether"), std::string::npos);
+  EXPECT_NE(readFile(out).find("solver.verlet"), std::string::npos);
   EXPECT_EQ(readFile(out).find("cannot be used"), std::string::npos) << readFile(out);
   std::ofstream(folder / "use.lua") << "local t = effect.tether{ stiffness = 0.2 } print(t.kind)";
-  ASSERT_EQ(exitCode(environment + PECTORA_PROGRAM " run --quiet " + (folder / "use.lua").string() + " > " + out.string()), 0);
+  ASSERT_EQ(exitCode(pectora + "run --quiet " + (folder / "use.lua").string() + " > " + out.string()), 0);
   EXPECT_EQ(readFile(out), "Effect\n");
+  EXPECT_EQ(exitCode(pectora + "run correction --help > " + out.string()), 0) << "the scripts are installed, too";
 }
