@@ -6,7 +6,8 @@ local p = parameters{
   { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
   { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
-  { name = "spacing", default = 8, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
+  { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
+  { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
   { name = "edge", default = "subpixel", choices = { "subpixel", "paper" }, doc = "Where the skin lies: the steepest grey value, or the paper's first pixel" },
   { name = "slices", default = 20, range = { 0, 1000 }, doc = "Number of slice pictures with contours" },
@@ -19,12 +20,13 @@ local anatomy = segmenter.thorax(ct, { edge = p.edge })
 local cage = splines.cartilage(anatomy)
 
 -- Model: two layers of points, and the effects that this scene calls for.
+local skin = { compression = p.skin_compression }
 local scene = model.two_layer(cage, {
   spacing = p.spacing,
   effects = {
-    effect.stretch{}, effect.shear{}, effect.bend{},   -- within the skin
-    effect.direct{}, effect.cross{},                   -- between skin and pleura
-    effect.attachment{},                               -- of the pleura to the rib cage
+    effect.stretch(skin), effect.shear(skin), effect.bend(skin),   -- within the skin
+    effect.direct{}, effect.cross{},                               -- between skin and pleura
+    effect.attachment{},                                           -- of the pleura to the rib cage
   },
 })
 

@@ -41,7 +41,7 @@ struct Scene : Value {
   std::vector<Vec3> outer, inner;         ///< rest positions, mm
   std::vector<double> outerMass, innerMass;  ///< kg
   double rowSpacing = 0, columnSpacing = 0;  ///< mean distance between neighbours on the skin, mm
-  double thickness = 0;                      ///< mean distance from skin to pleura, mm
+  double thickness = 0;                      ///< mean distance from skin to pleura over the middle third of the columns, mm
   std::vector<Anchor> anchors;
   std::vector<std::shared_ptr<const EffectCall>> effects;
 

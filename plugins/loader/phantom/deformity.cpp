@@ -80,7 +80,7 @@ double Deformity::along(double z) const {
 }
 
 double Deformity::elevation(double z) const {
-  const double turned = std::clamp((deepestZ_ + kPivotMm - z) / kPivotMm, 0.0, 1.0);
+  const double turned = std::max(0.0, (deepestZ_ + kPivotMm - z) / kPivotMm);
   return turned * step(kDecayTo, kDecayFrom, skeleton_->sternum.arcAt(z));
 }
 

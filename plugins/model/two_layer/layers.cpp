@@ -99,17 +99,19 @@ void buildLayers(const LayerSettings& settings, Scene& scene) {
 
   // Means over the grid, which the spring constants follow from.
   double rowSum = 0, columnSum = 0, thicknessSum = 0;
+  int frontPoints = 0;
   for (int r = 0; r < scene.rows; ++r) {
     for (int c = 0; c < scene.columns; ++c) {
       const int i = scene.index(r, c);
-      thicknessSum += distance(scene.outer[i], scene.inner[i]);
+      // The operation acts on the middle third; the thick flanks would make the wall look softer than it is there.
+      if (3 * c >= scene.columns && 3 * c < 2 * scene.columns) thicknessSum += distance(scene.outer[i], scene.inner[i]), ++frontPoints;
       if (r > 0) rowSum += distance(scene.outer[i], scene.outer[i - scene.columns]);
       if (c > 0) columnSum += distance(scene.outer[i], scene.outer[i - 1]);
     }
   }
   scene.rowSpacing = rowSum / ((scene.rows - 1) * scene.columns);
   scene.columnSpacing = columnSum / (scene.rows * (scene.columns - 1));
-  scene.thickness = thicknessSum / scene.points();
+  scene.thickness = thicknessSum / frontPoints;
 
   // Each layer carries half of the wall: density * cell * thickness / 2, mm^3 to m^3.
   for (int i = 0; i < scene.points(); ++i) {

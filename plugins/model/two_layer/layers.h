@@ -6,7 +6,7 @@
 namespace pectora {
 
 struct LayerSettings {
-  double spacing = 8;        ///< wanted distance between neighbours on the skin, mm, along rows and columns
+  double spacing = 10;       ///< wanted distance between neighbours on the skin, mm, along rows and columns
   double margin = 20;        ///< how far the model reaches above and below the ribs and sternum, mm
   double density = 1060;     ///< of the wall, kg/m^3
 };
