@@ -1,17 +1,10 @@
 // The program as a user runs it: exit codes, texts, and which stream they go to.
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
-#include <unistd.h>
+#include "tests/app/helpers.h"
 
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
-namespace fs = std::filesystem;
+using namespace pectora;
 
 namespace {
 
@@ -20,23 +13,20 @@ struct Outcome {
   std::string out, err;
 };
 
-std::string readFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+// A file of this process's own.
+std::string ownFile(const std::string& name) {
+  static const std::filesystem::path folder = freshFolder("app");
+  return (folder / name).string();
 }
 
-std::string temporary(const std::string& name) { return testing::TempDir() + "/pectora_app_" + std::to_string(getpid()) + "_" + name; }
-
 Outcome run(const std::string& arguments, const std::string& environment = "PECTORA_PLUGIN_PATH=" PECTORA_TEST_PLUGINS) {
-  const std::string out = temporary("out"), err = temporary("err");
-  const int status = std::system((environment + " " PECTORA_PROGRAM " " + arguments + " >" + out + " 2>" + err).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(out), readFile(err)};
+  const std::string out = ownFile("out"), err = ownFile("err");
+  const int code = exitCode(environment + " " PECTORA_PROGRAM " " + arguments + " >" + out + " 2>" + err);
+  return {code, readFile(out), readFile(err)};
 }
 
 std::string script(const std::string& code) {
-  const std::string path = temporary("script.lua");
+  const std::string path = ownFile("script.lua");
   std::ofstream(path) << code;
   return path;
 }
@@ -129,7 +119,7 @@ TEST(CommandLine, ListSaysWhatIsWrongWithABrokenPlugin) {
 
 TEST(CommandLine, CancelsCleanlyOnInterrupt) {
   const std::string path = script("segmenter.slow{}");
-  const std::string err = temporary("cancel_err");
+  const std::string err = ownFile("cancel_err");
   const pid_t child = fork();
   if (child == 0) {
     setenv("PECTORA_PLUGIN_PATH", PECTORA_TEST_PLUGINS, 1);

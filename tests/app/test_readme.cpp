@@ -1,25 +1,12 @@
 // What the README shows must work: its plugin is built as it stands, outside of the tree, and used by name.
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
-#include <unistd.h>
+#include "tests/app/helpers.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace fs = std::filesystem;
+using namespace pectora;
 
 namespace {
-
-std::string readFile(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // The first code block of a language.
 std::string codeBlock(const std::string& text, const std::string& language) {
@@ -28,19 +15,13 @@ std::string codeBlock(const std::string& text, const std::string& language) {
   return text.substr(begin, text.find("```", begin) - begin);
 }
 
-int exitCode(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 }  // namespace
 
 TEST(Readme, PluginOfOnesOwnBuildsAgainstAnInstallationAndAppearsByName) {
   const std::string readme = readFile(fs::path(PECTORA_SOURCE) / "README.md");
   const std::string code = codeBlock(readme, "cpp"), list = codeBlock(readme, "cmake");
   EXPECT_LE(std::count(code.begin(), code.end(), '\n'), 27);
-  const fs::path folder = fs::path(testing::TempDir()) / ("pectora_readme_" + std::to_string(getpid()));
-  fs::remove_all(folder);
+  const fs::path folder = freshFolder("readme");
   fs::create_directories(folder / "source");
   std::ofstream(folder / "source/tether.cpp") << code;
   std::ofstream(folder / "source/CMakeLists.txt") << list;

@@ -1,30 +1,13 @@
 // The main job end to end through the program: phantom, DICOM, prediction, comparison, files; and what must stay equal or stay out.
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <regex>
-#include <sstream>
+#include "tests/app/helpers.h"
 
 namespace fs = std::filesystem;
+using namespace pectora;
 
 namespace {
 
-std::string readFile(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 int run(const std::string& arguments, const fs::path& log) {
-  const int status = std::system((PECTORA_PROGRAM " " + arguments + " >" + log.string() + " 2>&1").c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return exitCode(PECTORA_PROGRAM " " + arguments + " >" + log.string() + " 2>&1");
 }
 
 // A coarse phantom and two runs of its correction, made once.
@@ -35,9 +18,7 @@ struct Runs {
 const Runs& runs() {
   static const Runs made = [] {
     Runs r;
-    r.folder = fs::path(testing::TempDir()) / ("pectora_whole_way_" + std::to_string(getpid()));
-    fs::remove_all(r.folder);
-    fs::create_directories(r.folder);
+    r.folder = freshFolder("whole_way");
     const fs::path log = r.folder / "log.txt";
     EXPECT_EQ(run("run phantom matrix=256 lift=25 seed=3 out=" + (r.folder / "patient").string(), log), 0) << readFile(log);
     for (const char* name : {"one", "two"}) {

@@ -87,7 +87,7 @@ class PhantomStage final : public Stage {
 
 PECTORA_STAGE(pectora::phantom::PhantomStage, {
   .id = "loader.phantom", .version = "1.0",
-  .summary = "A virtual patient with pectus excavatum: CT, exact anatomy, and a scan after the operation.",
+  .summary = "A virtual patient with pectus excavatum: CT, exact anatomy, and a scan after the operation",
   .references = "Rib and sternum dimensions, deformity types and tissue figures: science notes, section 1 (Kelly 2013; "
                 "MDCT sternum n = 200; Li, sternal length and age).",
   .inputs = {},

@@ -48,12 +48,14 @@ class Nuss final : public Stage {
     plan->intercostalSpace = intercostalSpace(*plan->cage, plan->deepest.z);
     plan->bar = shapeBar(*plan->cage, plan->deepest, plan->motion, bar_);
 
+    std::string strained;
     for (std::size_t i = 0; i < plan->cage->cartilages.size(); ++i) {
       const Cartilage& c = plan->cage->cartilages[i];
       const double strain = plan->frames.back()[i].strain;
       if (std::abs(strain) > kStrainWarning)
-        host.warn(fmt::format("the cartilage of the {} rib {} would be strained by {:.1f} %", sideName(c.side), c.rib, 100 * strain));
+        strained += fmt::format("{}{} {} by {:+.0f} %", strained.empty() ? "" : ", ", sideName(c.side), c.rib, 100 * strain);
     }
+    if (!strained.empty()) host.warn("these cartilages would be strained: " + strained);
     return {plan};
   }
 

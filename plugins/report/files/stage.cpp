@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace {
 using namespace pectora;
@@ -70,12 +71,10 @@ class Files final : public Stage {
 
   void writeMeshes(const Inputs& inputs) {
     if (const auto motion = inputs.get<Motion>("motion")) {
-      const Scene& scene = *motion->scene;
-      const Mesh before = layerMesh(scene.rows, scene.columns, scene.outer);
-      Mesh after = layerMesh(scene.rows, scene.columns, motion->outer);
-      PointField displacement{"displacement", "mm", {}};
-      for (std::size_t i = 0; i < motion->outer.size(); ++i) displacement.values.push_back(distance(motion->outer[i], scene.outer[i]));
-      after.fields.push_back(displacement);
+      std::map<std::string, std::shared_ptr<const Value>> parts;
+      for (auto& [name, part] : motion->parts()) parts[name] = part;
+      const auto& before = dynamic_cast<const Mesh&>(*parts.at("before"));
+      const auto& after = dynamic_cast<const Mesh&>(*parts.at("after"));
       writeFile(file("before.ply"), plyBytes(before, note(inputs, "motion")));
       writeFile(file("after.ply"), plyBytes(after, note(inputs, "motion")));
       writeFile(file("scene.vtp"), vtpBytes(after, note(inputs, "motion")));

@@ -47,7 +47,7 @@ class Thorax final : public Stage {
 
 PECTORA_STAGE(Thorax, {
   .id = "segmenter.thorax", .version = "1.0",
-  .summary = "Ribs (tracked and numbered), sternum, skin and pleura of a chest CT.",
+  .summary = "Ribs (tracked and numbered), sternum, skin and pleura of a chest CT",
   .references = "Moreira et al., SPIE 2012 (skin, tracking of bone contours); Hu 1962 (moment invariants); "
                 "Kuhn 1955 (assignment); Viterbi 1967 (spine and sternum).",
   .inputs = {{"ct", {"Volume"}}}, .outputs = {{"anatomy", {"Anatomy"}}}})

@@ -2,9 +2,13 @@
 #pragma once
 
 #include "kernel/host/runner.h"
+#include "kernel/value/scene.h"
 #include "kernel/value/volume.h"
 
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
 
 namespace pectora {
 
@@ -32,6 +36,22 @@ Error errorOf(F&& call) {
   }
   ADD_FAILURE() << "no error was thrown";
   return Error("none");
+}
+
+/// Whether a file is mapped into this process.
+inline bool isMapped(const std::string& file) {
+  std::ifstream maps("/proc/self/maps");
+  std::ostringstream text;
+  text << maps.rdbuf();
+  return text.str().find(file) != std::string::npos;
+}
+
+/// An effect as a scene calls it.
+inline std::shared_ptr<const EffectCall> call(const std::string& id, Settings settings = {}) {
+  auto effect = std::make_shared<EffectCall>();
+  effect->id = id;
+  effect->settings = std::move(settings);
+  return effect;
 }
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -2,19 +2,9 @@
 
 #include "kernel/host/compile.h"
 
-#include <fstream>
-#include <sstream>
-
 using namespace pectora;
 
 namespace {
-
-std::shared_ptr<const EffectCall> call(const std::string& id, Settings settings = {}) {
-  auto effect = std::make_shared<EffectCall>();
-  effect->id = id;
-  effect->settings = std::move(settings);
-  return effect;
-}
 
 // A flat wall of 6 x 7 points, each pleura point hung on an anchor behind it.
 Scene flatScene() {
@@ -33,13 +23,6 @@ Scene flatScene() {
   scene.outerMass.assign(42, 1e-3);
   scene.innerMass = scene.outerMass;
   return scene;
-}
-
-bool isMapped(const std::string& file) {
-  std::ifstream maps("/proc/self/maps");
-  std::ostringstream text;
-  text << maps.rdbuf();
-  return contains(text.str(), file);
 }
 
 }  // namespace

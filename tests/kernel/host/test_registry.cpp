@@ -1,20 +1,6 @@
 #include "tests/kernel/host/helpers.h"
 
-#include <fstream>
-#include <sstream>
-
 using namespace pectora;
-
-namespace {
-
-bool isMapped(const std::string& file) {
-  std::ifstream maps("/proc/self/maps");
-  std::ostringstream text;
-  text << maps.rdbuf();
-  return contains(text.str(), file);
-}
-
-}  // namespace
 
 TEST(Registry, MapsAPluginIntoTheProcessOnlyWhenItIsNamed) {
   Registry registry({PECTORA_TEST_PLUGINS});

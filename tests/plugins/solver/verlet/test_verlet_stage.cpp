@@ -11,13 +11,6 @@ using namespace pectora;
 
 namespace {
 
-std::shared_ptr<const EffectCall> call(const std::string& id, Settings settings = {}) {
-  auto effect = std::make_shared<EffectCall>();
-  effect->id = id;
-  effect->settings = std::move(settings);
-  return effect;
-}
-
 // A wall of 17 x 17 points on a "sternum" that moves as a whole.
 struct Wall {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>();
