@@ -1,0 +1,21 @@
+-- The phantoms that the anatomy is judged on. They are never tuned on: change the segmenter, not this list.
+return {
+  { name = "cup_4", haller = 4 },
+  { name = "normal_2.5", haller = 2.5 },
+  { name = "cup_3.25_noise_37", haller = 3.25, noise = 37 },
+  { name = "cup_5_noise_60_1mm", haller = 5, noise = 60, slice_spacing = 1, coverage = "thorax" },
+  { name = "cup_6", haller = 6 },
+  { name = "cup_4_5mm", haller = 4, slice_spacing = 5, noise = 12 },
+  { name = "saucer_3.5", haller = 3.5, type = "saucer" },
+  { name = "saucer_4_5mm", haller = 4, type = "saucer", slice_spacing = 5 },
+  { name = "trench_5", haller = 5, type = "trench" },
+  { name = "trench_4_turned", haller = 4, type = "trench", turn = 8 },
+  { name = "asymmetric_4", haller = 4, type = "asymmetric" },
+  { name = "asymmetric_5_noise_37", haller = 5, type = "asymmetric", noise = 37 },
+  { name = "cup_4_torsion_15", haller = 4, torsion = 15 },
+  { name = "cup_4.5_torsion_30", haller = 4.5, torsion = 30 },
+  { name = "child_of_10", haller = 3.5, age = 10, slice_spacing = 1, coverage = "thorax" },
+  { name = "adult_bmi_25", haller = 3.5, age = 20, bmi = 25, fov = 400 },
+  { name = "off_centre_clothed", haller = 4, shift_x = 15, shift_y = -20, clothing = true, fov = 400 },
+  { name = "calcified_cartilage", haller = 4, calcification = 0.4 },
+}
