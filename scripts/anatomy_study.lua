@@ -26,7 +26,7 @@ for _, variant in ipairs(require "anatomy_variants") do
   end
   local ct, truth = loader.phantom(settings)
   local anatomy = segmenter.thorax(ct, { edge = p.edge })
-  local figures = comparer.anatomy(anatomy, truth, splines.cartilage(anatomy))
+  local figures = comparer.anatomy(anatomy, truth, splines.cartilage(anatomy, ct))
   local row, line = string.format("%-24s", variant.name), variant.name
   for _, c in ipairs(columns) do
     row = row .. string.format(" %13s", string.format(c[3], figures[c[2]]))

@@ -17,7 +17,7 @@ local p = parameters{
 -- Anatomy: bones, skin and pleura from the CT; ribs and cartilages as curves.
 local ct = loader.dicom{ path = p.ct, series = p.series }
 local anatomy = segmenter.thorax(ct, { edge = p.edge })
-local cage = splines.cartilage(anatomy)
+local cage = splines.cartilage(anatomy, ct)
 
 -- Model: two layers of points, and the effects that this scene calls for.
 local skin = { compression = p.skin_compression }

@@ -12,6 +12,8 @@ namespace pectora {
 namespace {
 
 constexpr int kControls = 8, kSamples = 40;   // of a cartilage
+constexpr double kGuessedJoin = 0.5;             // where a false rib's cartilage joins the one above, if it cannot be seen
+constexpr double kNotchReach = 4, kJoinReach = 5; // mm at which a followed cartilage has arrived
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
@@ -68,7 +70,8 @@ Curve alongPleura(const Curve& cubic, const std::vector<LayerSlice>& pleura) {
 
 }  // namespace
 
-RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& settings, std::vector<std::string>& warnings) {
+RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, const CageSettings& settings,
+                  std::vector<std::string>& warnings, const std::function<void()>& poll) {
   RibCage cage;
   cage.anatomy = anatomy;
   for (const Rib& rib : anatomy->ribs) {
@@ -80,44 +83,53 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const CageSettings& se
     cage.ribs.push_back(std::move(curve));
   }
 
-  std::string missing;
+  std::string missing, guessed;
+  const auto note = [](std::string& list, Side side, int number) { list += fmt::format("{}{} {}", list.empty() ? "" : ", ", sideName(side), number); };
   for (int number = 1; number <= kLastFalseRib; ++number) {
     for (Side side : {Side::right, Side::left}) {
+      poll();
+      // Where it begins, and where it ends: at the sternum, or on the cartilage above.
       const Rib* rib = anatomy->rib(side, number);
-      const auto leaveOut = [&] { missing += fmt::format("{}{} {}", missing.empty() ? "" : ", ", sideName(side), number); };
-      if (!rib || !rib->reachesJunction || rib->centerline.size() < 4) {
-        leaveOut();
+      const Notch* notch = number <= kLastTrueRib ? findNotch(anatomy->sternum, side, number) : nullptr;
+      const Cartilage* above = number > kLastTrueRib ? findCartilage(cage, side, number - 1) : nullptr;
+      if (!rib || !rib->reachesJunction || rib->centerline.size() < 4 || (!notch && !above)) {
+        note(missing, side, number);
         continue;
       }
-      const RibCurve* ribCurve = nullptr;
-      for (const RibCurve& r : cage.ribs)
-        if (r.side == side && r.number == number) ribCurve = &r;
+      const auto ribCurve = std::find_if(cage.ribs.begin(), cage.ribs.end(), [&](const RibCurve& r) { return r.side == side && r.number == number; });
       const Vec3 start = ribCurve->curve.at(1), along = normalized(ribCurve->curve.derivative(1));
+      const Vec3 end = notch ? notch->position : above->curve.at(kGuessedJoin);
+      const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : above->curve.derivative(kGuessedJoin));
+      const Curve guess = alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura);
 
-      Cartilage cartilage{side, number, {}, 0, 0};
-      if (number <= kLastTrueRib) {
-        const Notch* notch = findNotch(anatomy->sternum, side, number);
-        if (!notch) {
-          leaveOut();
-          continue;
+      Cartilage cartilage{side, number, guess, above ? number - 1 : 0, above ? kGuessedJoin : 0};
+      std::optional<std::vector<Vec3>> path;
+      if (ct) {
+        const std::vector<Vec3> upper = above ? above->curve.sample(kSamples) : std::vector<Vec3>();
+        const auto isEnd = [&](Vec3 p) {
+          if (notch) return distance(p, notch->position) < kNotchReach;
+          // They touch before they join: only what lies just past the middle of the upper cartilage counts.
+          for (int i = kSamples / 2; i < kSamples * 6 / 10; ++i)
+            if (distance(p, upper[i]) < kJoinReach) return true;
+          return false;
+        };
+        path = traceCartilage(*ct, start, guess.sample(kSamples), isEnd, settings.trace);
+      }
+      if (path && polylineLength(*path) > 4) {
+        if (notch) {
+          path->push_back(notch->position);
+        } else {
+          cartilage.joinsAt = above->curve.closest(path->back());
+          path->push_back(above->curve.at(cartilage.joinsAt));
         }
-        const Vec3 arrival = normalized(arrivalDirection(side, number));
-        cartilage.curve = alongPleura(hermiteCurve(start, along, notch->position, arrival, settings.handle), anatomy->pleura);
-      } else {
-        const Cartilage* above = findCartilage(cage, side, number - 1);
-        if (!above) {
-          leaveOut();
-          continue;
-        }
-        cartilage.joins = number - 1;
-        cartilage.joinsAt = 0.5;
-        const Vec3 end = above->curve.at(cartilage.joinsAt);
-        const Vec3 arrival = normalized(above->curve.derivative(cartilage.joinsAt));
-        cartilage.curve = alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura);
+        cartilage.curve = fitCurve(resamplePolyline(*path, kSamples), kControls);
+      } else if (ct) {
+        note(guessed, side, number);
       }
       cage.cartilages.push_back(std::move(cartilage));
     }
   }
+  if (!guessed.empty()) warnings.push_back("the cartilage cannot be seen in the CT, its course is a guess: " + guessed);
   if (!missing.empty())
     warnings.push_back("no cartilage was built for rib " + missing + ": its junction, or what it joins, was not found");
   return cage;

@@ -78,7 +78,7 @@ TEST(HermiteCurve, HasTheAskedEndsAndTangents) {
 
 TEST(BuildCage, JoinsTrueRibsToTheSternumAndFalseOnesToTheArch) {
   std::vector<std::string> warnings;
-  const RibCage cage = buildCage(halfCage(), {}, warnings);
+  const RibCage cage = buildCage(halfCage(), nullptr, {}, warnings);
   ASSERT_EQ(cage.ribs.size(), 6u);
   ASSERT_EQ(cage.cartilages.size(), 6u);
   for (const Cartilage& c : cage.cartilages) {
@@ -94,7 +94,7 @@ TEST(BuildCage, SaysWhichCartilagesCouldNotBeBuilt) {
   auto anatomy = halfCage();
   anatomy->ribs[1].reachesJunction = false;  // rib 5
   std::vector<std::string> warnings;
-  const RibCage cage = buildCage(anatomy, {}, warnings);
+  const RibCage cage = buildCage(anatomy, nullptr, {}, warnings);
   EXPECT_EQ(cage.cartilages.size(), 5u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("left 5"), std::string::npos) << warnings[0];
@@ -111,7 +111,7 @@ TEST(BuildCage, LetsCartilagesFollowThePitThatThePleuraShows) {
   }
   for (Notch& notch : anatomy->sternum.notches) notch.position.y = depth(notch.position.x) - 6;
   std::vector<std::string> warnings;
-  const RibCage cage = buildCage(anatomy, {}, warnings);
+  const RibCage cage = buildCage(anatomy, nullptr, {}, warnings);
   for (const Cartilage& c : cage.cartilages) {
     if (c.joins > 0) continue;
     const double first = c.curve.at(0).y - depth(c.curve.at(0).x);
@@ -121,5 +121,43 @@ TEST(BuildCage, LetsCartilagesFollowThePitThatThePleuraShows) {
       EXPECT_GT(offset, std::min(first, -6.0) - 2.5) << c.rib << " at " << u;
       EXPECT_LT(offset, std::max(first, -6.0) + 2.5) << c.rib << " at " << u;
     }
+  }
+}
+
+TEST(TraceCartilage, FollowsABowThroughMuscleToItsEnd) {
+  // A tube of cartilage (100 HU, radius 5 mm) bowed by 20 mm, in muscle (55 HU), with noise of 20 HU.
+  Volume ct;
+  ct.grid.size = {110, 70, 60};
+  ct.hu.resize(ct.grid.voxels());
+  const auto middle = [](double x) { return Vec3{x, 20 + 20 * std::sin(3.14159 * (x - 15) / 80), 30}; };
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> noise(-35, 35);
+  for (int k = 0; k < 60; ++k)
+    for (int j = 0; j < 70; ++j)
+      for (int i = 0; i < 110; ++i) {
+        double nearest = 1e9;
+        for (double x = 15; x <= 95; x += 4) nearest = std::min(nearest, distance(middle(x), Vec3{double(i), double(j), double(k)}));
+        ct.hu[ct.grid.index(i, j, k)] = std::int16_t((nearest < 5 ? 100 : 55) + noise(random));
+      }
+  const std::vector<Vec3> guess{{15, 20, 30}, {95, 20, 30}};
+  const auto path = traceCartilage(ct, middle(15), guess, [&](Vec3 p) { return distance(p, middle(95)) < 4; }, {});
+  ASSERT_TRUE(path);
+  double sum = 0;
+  for (const Vec3& p : *path) {
+    double nearest = 1e9;
+    for (double x = 15; x <= 95; x += 0.5) nearest = std::min(nearest, distance(middle(x), p));
+    sum += nearest * nearest;
+  }
+  // The grid is of 1.5 mm.
+  EXPECT_LT(std::sqrt(sum / double(path->size())), 1.5);
+}
+
+TEST(TraceCartilage, GivesNothingWhereThereIsOnlyMuscleOrAir) {
+  Volume ct;
+  ct.grid.size = {80, 40, 40};
+  const std::vector<Vec3> guess{{10, 20, 20}, {70, 20, 20}};
+  for (const int hu : {40, -1000}) {
+    ct.hu.assign(ct.grid.voxels(), std::int16_t(hu));
+    EXPECT_FALSE(traceCartilage(ct, guess[0], guess, [&](Vec3 p) { return distance(p, guess[1]) < 4; }, {}));
   }
 }
