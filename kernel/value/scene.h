@@ -20,16 +20,17 @@ enum class BodyKind {
   rib,
   cartilage,
   sternum,
-  still,   ///< what the operation does not move: the abdomen behind the wall below the costal arch
+  still,   ///< what the operation does not move: the abdomen behind the wall below the costal arch, skin beyond the model
 };
 
-/// Where an inner point hangs on a body: a material point of that body.
+/// Where a point hangs on a body: a material point of that body.
 struct Anchor {
-  int point = 0;                       ///< index into Scene::inner
+  int point = 0;                       ///< index into Scene::inner, or Scene::outer if it is on the skin
   BodyKind body = BodyKind::rib;
   int index = 0;                       ///< into RibCage::ribs or ::cartilages; 0 for the others
   double u = 0;                        ///< curve parameter of the material point; of a rib or cartilage only
   Vec3 rest;                           ///< its position at rest, mm
+  bool isOnSkin = false;               ///< holds the skin at the model's edge, where skin beyond the model goes on
 };
 
 /// Two layers of rows × columns points: `outer` on the skin, `inner` on the pleura. Row 0 is the lowest level,

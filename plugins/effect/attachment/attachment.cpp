@@ -1,4 +1,4 @@
-// Each pleura point hangs on the ribs, cartilages and sternum next to it.
+// Each pleura point hangs on the ribs, cartilages and sternum next to it; the skin's edge on the skin beyond.
 #include "kernel/stage/effect.h"
 
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ class Attachment final : public Effect {
       part.emptyBecause = "no rib, cartilage or sternum was found to hold the pleura";
       return part;
     }
-    // A strut of length L and section A has k = E A / L; one shorter than 1 mm counts as 1 mm. The abdomen, which holds
-    // its wall where it is, gives way like a strut as long as the wall is thick.
+    // A strut of length L and section A has k = E A / L; one shorter than 1 mm counts as 1 mm. The abdomen behind its
+    // wall, and the skin beyond the model's edge, give way like a strut as long as the wall is thick.
     const double area = scene.rowSpacing * scene.columnSpacing;
     double least = INFINITY, greatest = 0;
     const std::size_t layer = scene.points();
@@ -32,7 +32,7 @@ class Attachment final : public Effect {
       const Anchor& anchor = scene.anchors[j];
       const double length = anchor.body == BodyKind::still ? scene.thickness : std::max(1.0, distance(anchor.rest, scene.inner[anchor.point]));
       const double k = stiffness_ > 0 ? stiffness_ : youngsModulus_ * 1e-3 * area / length;
-      part.springs.push_back({layer + anchor.point, 2 * layer + j, k});
+      part.springs.push_back({anchor.isOnSkin ? anchor.point : layer + anchor.point, 2 * layer + j, k});
       least = std::min(least, k);
       greatest = std::max(greatest, k);
     }

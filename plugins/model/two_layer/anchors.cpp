@@ -34,7 +34,7 @@ std::vector<BodyPoints> collectBodies(const RibCage& cage) {
 
 // The point of a curve nearest to p, searched around the nearest sample.
 Anchor refine(const BodyPoints& body, int sample, Vec3 p) {
-  if (!body.curve) return {0, body.kind, body.index, 0, body.points[sample]};
+  if (!body.curve) return {0, body.kind, body.index, 0, body.points[sample], false};
   double low = std::max(0.0, double(sample - 1) / (kSamples - 1)), high = std::min(1.0, double(sample + 1) / (kSamples - 1));
   for (int i = 0; i < 40; ++i) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -42,7 +42,7 @@ Anchor refine(const BodyPoints& body, int sample, Vec3 p) {
     else low = a;
   }
   const double u = 0.5 * (low + high);
-  return {0, body.kind, body.index, u, body.curve->at(u)};
+  return {0, body.kind, body.index, u, body.curve->at(u), false};
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::vector<Anchor> findAnchors(const Scene& scene, double reach) {
         return a.squared != b.squared ? a.squared < b.squared : a.body < b.body;
       });
       if (count == 0 || near.front().squared > reach * reach) {
-        found[point].push_back({point, BodyKind::still, 0, 0, p});
+        found[point].push_back({point, BodyKind::still, 0, 0, p, false});
         continue;
       }
       for (std::size_t i = 0; i < count; ++i) {
@@ -86,6 +86,11 @@ std::vector<Anchor> findAnchors(const Scene& scene, double reach) {
   });
   std::vector<Anchor> anchors;
   for (const auto& list : found) anchors.insert(anchors.end(), list.begin(), list.end());
+  for (int point = 0; point < scene.points(); ++point) {
+    const int r = point / scene.columns, c = point % scene.columns;
+    const bool isEdge = r == 0 || c == 0 || r == scene.rows - 1 || c == scene.columns - 1;
+    if (isEdge) anchors.push_back({point, BodyKind::still, 0, 0, scene.outer[point], true});
+  }
   return anchors;
 }
 

@@ -106,7 +106,7 @@ TEST(Layers, AreRefusedWhereTooLittleIsInView) {
 TEST(Anchors, AreTheNearestPointsOfThreeDifferentBodies) {
   const Scene scene = built(barrel(), 10);
   const std::vector<Anchor> anchors = findAnchors(scene, 1000);
-  ASSERT_EQ(anchors.size(), 3u * scene.points());
+  ASSERT_EQ(anchors.size(), 3u * scene.points() + 2 * (scene.rows + scene.columns) - 4);
   for (int i = 0; i < scene.points(); ++i) {
     const Anchor* three = &anchors[3 * i];
     for (int k = 0; k < 3; ++k) {
@@ -129,6 +129,7 @@ TEST(Anchors, HoldInPlaceWhatLiesTooFarFromEveryBody) {
   std::vector<int> perPoint(scene.points());
   int still = 0;
   for (const Anchor& a : anchors) {
+    if (a.isOnSkin) continue;
     ++perPoint[a.point];
     if (a.body != BodyKind::still) continue;
     ++still;
@@ -136,4 +137,18 @@ TEST(Anchors, HoldInPlaceWhatLiesTooFarFromEveryBody) {
   }
   EXPECT_GT(still, 0);
   for (int count : perPoint) EXPECT_TRUE(count == 1 || count == 3);
+}
+
+TEST(Anchors, HoldTheSkinAtTheEdgeOfTheModel) {
+  const Scene scene = built(barrel(), 10);
+  int held = 0;
+  for (const Anchor& a : findAnchors(scene, 40)) {
+    if (!a.isOnSkin) continue;
+    ++held;
+    const int r = a.point / scene.columns, c = a.point % scene.columns;
+    EXPECT_TRUE(r == 0 || r == scene.rows - 1 || c == 0 || c == scene.columns - 1);
+    EXPECT_EQ(a.rest, scene.outer[a.point]);
+    EXPECT_EQ(a.body, BodyKind::still);
+  }
+  EXPECT_EQ(held, 2 * (scene.rows + scene.columns) - 4);
 }
