@@ -68,7 +68,16 @@ Compiled compile(const Scene& scene, Registry& registry) {
     } catch (Error& error) {
       throw error.inStage(call->id);
     }
-    EffectUse use{call->id, part.emptyBecause.empty(), part.emptyBecause, part.springs.size(), part.notes};
+    EffectUse use;
+    use.id = call->id;
+    use.isActive = part.emptyBecause.empty();
+    use.reason = part.emptyBecause;
+    use.springs = part.springs.size();
+    use.notes = part.notes;
+    for (const auto& term : part.terms) {
+      use.hasHessian = use.hasHessian && term->hasHessian();
+      use.hasSprings = use.hasSprings && term->hasSprings();
+    }
     const std::string name = call->id.substr(call->id.find('.') + 1);
     for (const StencilSpring& s : part.stencil) checkStiffness(s.stiffnessNPerMm, call->id), use.springs += pairCount(s, scene);
     for (const NodeSpring& s : part.springs) checkStiffness(s.stiffnessNPerMm, call->id);

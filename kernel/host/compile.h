@@ -14,6 +14,8 @@ struct EffectUse {
   std::string reason;               ///< why it dropped out
   std::size_t springs = 0;          ///< pairs of points that it joins
   std::vector<std::string> notes;   ///< such as calibrated constants
+  bool hasHessian = true;           ///< whether all its terms offer one
+  bool hasSprings = true;           ///< whether it is nothing but springs
 };
 
 struct Compiled {

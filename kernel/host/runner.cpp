@@ -58,6 +58,16 @@ class StageHost final : public Host {
   std::vector<std::string> warnings_;
 };
 
+// Refuses the first effect that cannot give what the solver uses.
+void checkNeeds(const std::string& solver, const Needs& needs, const std::vector<EffectUse>& effects) {
+  for (const EffectUse& use : effects) {
+    const char* missing = needs.hessian && !use.hasHessian ? "a Hessian" : needs.springs && !use.hasSprings ? "springs alone" : nullptr;
+    if (!missing) continue;
+    throw Error(fmt::format("{} works only with effects that offer {}, and {} does not", solver, missing, use.id))
+        .of("scene").advise(fmt::format("Take a solver that uses gradients alone, such as solver.verlet or solver.lbfgs, or leave {} out of the scene", use.id));
+  }
+}
+
 // Settings as the record shows them: read paths as hashes, written paths not at all.
 std::vector<std::pair<std::string, std::string>> recordSettings(const std::vector<Parameter>& parameters) {
   std::vector<std::pair<std::string, std::string>> settings;
@@ -239,6 +249,7 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
   const Compiled compiled = compile(*scene, registry_);
   for (const EffectUse& use : compiled.effects)
     if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
+  checkNeeds(plugin.descriptor->id, solver.needs(), compiled.effects);
   if (explanations) {
     explain(plugin, compiled, *scene);
     throw Explained();
@@ -250,11 +261,13 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
   NodeVectors start;
   if (!inputs[2].empty()) {
     const auto from = std::dynamic_pointer_cast<const Motion>(inputs[2].front().value);
-    if (from->outer.size() != layer)
+    if (from->outer.size() != layer || from->anchors.size() != scene->anchors.size())
       throw Error("the motion to start from belongs to another scene").of("start")
-          .given(fmt::format("{} points", from->outer.size())).allowed(fmt::format("{} points", layer));
+          .given(fmt::format("{} points, {} anchors", from->outer.size(), from->anchors.size()))
+          .allowed(fmt::format("{} points, {} anchors", layer, scene->anchors.size()));
     start = system.rest;
     for (std::size_t i = 0; i < layer; ++i) start.set(i, from->outer[i]), start.set(layer + i, from->inner[i]);
+    for (std::size_t j = 0; j < from->anchors.size(); ++j) start.set(2 * layer + j, from->anchors[j]);
   }
   const auto session = solver.prepare(system, host);
   const Drive drive = makeDrive(*scene, *plan);
@@ -268,6 +281,7 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
     motion->outer.push_back(solution.positions[i]);
     motion->inner.push_back(solution.positions[layer + i]);
   }
+  motion->anchors = drive.frames.back();
   motion->status = solution.status;
   motion->message = std::move(solution.message);
   motion->iterations = solution.iterations;

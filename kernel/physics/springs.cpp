@@ -1,6 +1,6 @@
 #include "kernel/physics/springs.h"
 
-#include "kernel/physics/workers.h"
+#include "kernel/physics/hessian.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,106 +18,29 @@ struct SpringPull {
   double magnitude;
 };
 
-SpringPull pull(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness, double compression) {
+SpringPull pull(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness) {
   const Vec3 d = far - near;
   const double length = norm(d);
   const Vec3 direction = length > kDegenerate * restLength && length > 0 ? d / length : restDirection;
-  const double tension = (length < restLength ? compression * stiffness : stiffness) * (length - restLength);
+  const double tension = stiffness * (length - restLength);
   return {direction * tension, 0.5 * tension * (length - restLength), std::abs(tension)};
 }
 
-class LatticeTerm final : public Term {
- public:
-  LatticeTerm(std::string name, const System& system, std::vector<StencilSpring> stencil)
-      : name_(std::move(name)), rows_(system.rows), columns_(system.columns), rest_(system.rest) {
-    // Every spring is seen from both of its ends, so that points can be evaluated independently.
-    for (const StencilSpring& s : stencil) {
-      arms_[int(s.from)].push_back({int(s.to), s.rows, s.columns, s.stiffnessNPerMm, s.compression});
-      arms_[int(s.to)].push_back({int(s.from), -s.rows, -s.columns, s.stiffnessNPerMm, s.compression});
-    }
-    const std::size_t points = std::size_t(rows_) * columns_;
-    for (int layer = 0; layer < 2; ++layer) {
-      restLengths_[layer].assign(points * arms_[layer].size(), 0.0);
-      forEachSpring(layer, 0, rows_, [&](std::size_t node, std::size_t other, std::size_t slot, const Arm&) {
-        restLengths_[layer][slot] = distance(rest_[node], rest_[other]);
-      });
-    }
-  }
-
-  std::string name() const override { return name_; }
-
-  double energy(const NodeVectors& positions) const override {
-    return sum(positions, nullptr, nullptr);
-  }
-
-  double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
-    return sum(positions, &gradient, &largestForce);
-  }
-
-  void addStiffnessBound(std::vector<double>& bound) const override {
-    for (int layer = 0; layer < 2; ++layer)
-      forEachSpring(layer, 0, rows_, [&](std::size_t node, std::size_t, std::size_t, const Arm& arm) {
-        bound[node] += 2 * arm.stiffness;
-      });
-  }
-
- private:
-  // One spring as seen from a point.
-  struct Arm {
-    int layer, rows, columns;
-    double stiffness, compression;
-  };
-
-  // Calls f(node, other node, slot of the rest length, arm) for every spring end in some rows of a layer.
-  template <class F>
-  void forEachSpring(int layer, int rowBegin, int rowEnd, F&& f) const {
-    const std::size_t layerPoints = std::size_t(rows_) * columns_;
-    for (int r = rowBegin; r < rowEnd; ++r) {
-      for (int c = 0; c < columns_; ++c) {
-        const std::size_t point = std::size_t(r) * columns_ + c;
-        std::size_t slot = point * arms_[layer].size();
-        for (const Arm& arm : arms_[layer]) {
-          const int row = r + arm.rows, column = c + arm.columns;
-          if (row >= 0 && row < rows_ && column >= 0 && column < columns_)
-            f(layer * layerPoints + point, arm.layer * layerPoints + std::size_t(row) * columns_ + column, slot, arm);
-          ++slot;
-        }
-      }
-    }
-  }
-
-  // One task a block of rows of one layer. Blocks and the order of their sums never depend on the threads.
-  double sum(const NodeVectors& positions, NodeVectors* gradient, double* largestForce) const {
-    constexpr int kBlock = 8;
-    const std::size_t blocks = (rows_ + kBlock - 1) / kBlock;
-    std::vector<double> energies(2 * blocks, 0.0), largest(2 * blocks, 0.0);
-    parallelFor(2 * blocks, [&](std::size_t task) {
-      const int layer = task >= blocks;
-      const int begin = int(task % blocks) * kBlock, end = std::min(rows_, begin + kBlock);
-      forEachSpring(layer, begin, end, [&](std::size_t node, std::size_t other, std::size_t slot, const Arm& arm) {
-        const Vec3 restDirection = normalized(rest_[other] - rest_[node]);
-        const SpringPull p = pull(positions[node], positions[other], restLengths_[layer][slot], restDirection,
-                                  arm.stiffness, arm.compression);
-        energies[task] += 0.5 * p.energy;  // the other end has the other half
-        if (!gradient) return;
-        gradient->add(node, -p.force);
-        largest[task] = std::max(largest[task], p.magnitude);
-      });
-    });
-    double total = 0;
-    for (std::size_t task = 0; task < 2 * blocks; ++task) {
-      total += energies[task];
-      if (largestForce) *largestForce = std::max(*largestForce, largest[task]);
-    }
-    return total;
-  }
-
-  std::string name_;
-  int rows_, columns_;
-  NodeVectors rest_;
-  std::vector<Arm> arms_[2];
-  std::vector<double> restLengths_[2];
+// Second derivative of one spring: a I + m m^T.
+struct SpringCurvature {
+  Vec3 m;
+  double a;
 };
+
+SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness, bool projected) {
+  const Vec3 d = far - near;
+  const double length = norm(d);
+  if (!(length > kDegenerate * restLength && length > 0))
+    return restLength > 0 ? SpringCurvature{restDirection * std::sqrt(stiffness), 0} : SpringCurvature{{}, stiffness};
+  const double across = stiffness * (1 - restLength / length);
+  const double a = projected ? std::max(0.0, across) : across;
+  return {d * (std::sqrt(stiffness - a) / length), a};
+}
 
 class SpringTerm final : public Term {
  public:
@@ -159,10 +82,24 @@ class SpringTerm final : public Term {
     }
   }
 
+  bool hasHessian() const override { return true; }
+  std::unique_ptr<Hessian> makeHessian() const override;
+  bool hasSprings() const override { return true; }
+  void forEachSpring(const std::function<void(const Spring&)>& visit) const override {
+    for (std::size_t i = 0; i < springs_.size(); ++i)
+      visit({springs_[i].a, springs_[i].b, springs_[i].stiffnessNPerMm, restLengths_[i], 1});
+  }
+
+  const std::vector<NodeSpring>& springs() const { return springs_; }
+  SpringCurvature curvature(std::size_t i, const NodeVectors& positions, bool projected) const {
+    return curvatureOf(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
+                       springs_[i].stiffnessNPerMm, projected);
+  }
+
  private:
   SpringPull at(std::size_t i, const NodeVectors& positions) const {
     return pull(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
-                springs_[i].stiffnessNPerMm, 1);
+                springs_[i].stiffnessNPerMm);
   }
 
   std::string name_;
@@ -172,11 +109,39 @@ class SpringTerm final : public Term {
   std::vector<Vec3> restDirections_;
 };
 
-}  // namespace
+class SpringHessian final : public Hessian {
+ public:
+  explicit SpringHessian(const SpringTerm& term) : term_(term), curvatures_(term.springs().size()) {}
+  void linearise(const NodeVectors& positions, bool projected) override {
+    for (std::size_t i = 0; i < curvatures_.size(); ++i) curvatures_[i] = term_.curvature(i, positions, projected);
+  }
+  void multiply(const NodeVectors& v, NodeVectors& y) const override {
+    for (std::size_t i = 0; i < curvatures_.size(); ++i) {
+      const NodeSpring& s = term_.springs()[i];
+      const SpringCurvature& c = curvatures_[i];
+      const Vec3 d = v[s.b] - v[s.a];
+      const Vec3 pull = d * c.a + c.m * dot(c.m, d);
+      y.add(s.a, -pull);
+      y.add(s.b, pull);
+    }
+  }
+  void addDiagonal(std::vector<Symmetric3>& blocks) const override {
+    for (std::size_t i = 0; i < curvatures_.size(); ++i) {
+      const auto& [m, a] = curvatures_[i];
+      const Symmetric3 block{a + m.x * m.x, m.x * m.y, m.x * m.z, a + m.y * m.y, m.y * m.z, a + m.z * m.z};
+      blocks[term_.springs()[i].a] += block;
+      blocks[term_.springs()[i].b] += block;
+    }
+  }
 
-std::unique_ptr<Term> makeLatticeTerm(std::string name, const System& system, std::vector<StencilSpring> stencil) {
-  return std::make_unique<LatticeTerm>(std::move(name), system, std::move(stencil));
-}
+ private:
+  const SpringTerm& term_;
+  std::vector<SpringCurvature> curvatures_;
+};
+
+std::unique_ptr<Hessian> SpringTerm::makeHessian() const { return std::make_unique<SpringHessian>(*this); }
+
+}  // namespace
 
 std::unique_ptr<Term> makeSpringTerm(std::string name, const System& system, std::vector<NodeSpring> springs) {
   return std::make_unique<SpringTerm>(std::move(name), system, std::move(springs));

@@ -1,5 +1,7 @@
 #include "kernel/physics/system.h"
 
+#include "kernel/physics/hessian.h"
+
 #include <algorithm>
 
 namespace pectora {
@@ -9,6 +11,8 @@ void NodeVectors::clear() {
   std::fill(y.begin(), y.end(), 0.0);
   std::fill(z.begin(), z.end(), 0.0);
 }
+
+std::unique_ptr<Hessian> Term::makeHessian() const { return nullptr; }
 
 double System::evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const {
   gradient.clear();

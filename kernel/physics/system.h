@@ -3,6 +3,7 @@
 
 #include "kernel/value/vec3.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,14 @@ struct NodeVectors {
   void clear();
 };
 
+class Hessian;
+
+/// A spring between two nodes: energy 1/2 k (l - l0)^2, with k multiplied by `compression` while l < l0.
+struct Spring {
+  std::size_t a = 0, b = 0;
+  double stiffnessNPerMm = 0, restLength = 0, compression = 1;
+};
+
 /// One term of the potential energy, in N mm.
 class Term {
  public:
@@ -35,6 +44,16 @@ class Term {
   /// Adds to each node a bound of its stiffness: the sum over its springs of 2 k, or k where the other end is driven
   /// (science: Gershgorin bound of the Hessian's rows), N/mm.
   virtual void addStiffnessBound(std::vector<double>& bound) const = 0;
+
+  /// Offers, for solvers that need more than a gradient. Each comes with a word on whether it is there, so that a solver
+  /// can be refused before any work.
+  virtual bool hasHessian() const { return false; }
+  /// The second derivative, not yet taken anywhere. The term must outlive it. Null without one.
+  virtual std::unique_ptr<Hessian> makeHessian() const;
+  /// True if the term is nothing but springs.
+  virtual bool hasSprings() const { return false; }
+  /// Calls `visit` for each of them, always in one order.
+  virtual void forEachSpring(const std::function<void(const Spring&)>& /*visit*/) const {}
 };
 
 /// Nodes [0, freeNodes) are unknown, the rest follow the plan.

@@ -18,12 +18,13 @@ void pushFact(lua_State* lua, const Fact& fact) {
   else lua_pushstring(lua, std::get<std::string>(fact.value).c_str());
 }
 
-// value.name: a fact, a part, or `kind`.
+// value.name: a fact, a part, `kind`, or `seconds`, which its stage took to make it.
 int handleIndex(lua_State* lua) {
   const Handle& handle = *toHandle(lua, 1);
   const std::string name = luaL_checkstring(lua, 2);
   if (name == "kind") return lua_pushstring(lua, handle.value->kind()), 1;
-  std::vector<std::string> known{"kind"};
+  if (name == "seconds" && handle.record) return lua_pushnumber(lua, handle.record->seconds), 1;
+  std::vector<std::string> known{"kind", "seconds"};
   for (const Fact& fact : handle.value->facts()) {
     if (fact.name == name) return pushFact(lua, fact), 1;
     known.push_back(fact.name);

@@ -24,15 +24,24 @@ struct Solution {
 class Session {
  public:
   virtual ~Session() = default;
-  /// Solves for the whole motion of `drive`. `start` (all nodes) is where to begin; null: at rest.
+  /// Solves for the whole motion of `drive`. `start` (all nodes, the driven ones where an earlier motion left them) is where
+  /// to begin, and the driven nodes then go straight to the end of `drive`; null: at rest.
   /// Throws Cancelled when the host says so.
   virtual Solution solve(const Drive& drive, const NodeVectors* start, Host& host) = 0;
+};
+
+/// What a solver uses of every term beside energy and gradient, which all terms have.
+struct Needs {
+  bool hessian = false;   ///< Term::makeHessian
+  bool springs = false;   ///< Term::forEachSpring: the term is nothing but springs
 };
 
 class Solver {
  public:
   virtual ~Solver() = default;
   virtual void describe(Visitor& visitor) = 0;
+  /// An effect that cannot give it is refused by name before any work.
+  virtual Needs needs() const { return {}; }
   /// Checks the settings against the system and prepares it. The system outlives the session.
   /// Throws Error if a setting cannot work for this system.
   virtual std::unique_ptr<Session> prepare(const System& system, Host& host) = 0;

@@ -17,6 +17,7 @@ struct Motion : Value {
   static constexpr const char* kName = "Motion";
   std::shared_ptr<const Scene> scene;
   std::vector<Vec3> outer, inner;           ///< positions after, as in Scene
+  std::vector<Vec3> anchors;                ///< where the plan brought the scene's anchors
   SolveStatus status = SolveStatus::stalled;
   std::string message;                      ///< what is wrong, and where, if not converged
   int iterations = 0;

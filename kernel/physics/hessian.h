@@ -1,0 +1,39 @@
+// The second derivative of an energy, as solvers use it: products with a vector, and its 3 x 3 blocks on the diagonal.
+#pragma once
+
+#include "kernel/physics/system.h"
+
+namespace pectora {
+
+/// A symmetric 3 x 3 matrix.
+struct Symmetric3 {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  Symmetric3& operator+=(const Symmetric3& b);
+  /// Adds s times the identity.
+  void addIdentity(double s) { xx += s, yy += s, zz += s; }
+  Vec3 operator*(Vec3 v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+  }
+};
+/// The inverse of a positive definite matrix. A direction in which it is not positive counts as weak, not as endless:
+/// the diagonal is raised until all pivots exceed 1e-9 of the trace. Of a matrix without positive trace: the identity.
+Symmetric3 inverse(Symmetric3 a);
+
+/// A term's second derivative at one place. Each call of linearise moves it to another.
+class Hessian {
+ public:
+  virtual ~Hessian() = default;
+  /// Takes the derivative at `positions`; `projected`: its nearest positive semi-definite form, element by element.
+  /// An element that has no direction of its own (a spring of no length) is always projected.
+  virtual void linearise(const NodeVectors& positions, bool projected) = 0;
+  /// y += H v, over all nodes. The result does not depend on the number of threads.
+  virtual void multiply(const NodeVectors& v, NodeVectors& y) const = 0;
+  /// Adds the blocks on the diagonal, one a node, N/mm.
+  virtual void addDiagonal(std::vector<Symmetric3>& blocks) const = 0;
+};
+
+/// The Hessian of all terms of a system; null if a term has none.
+std::unique_ptr<Hessian> makeHessian(const System& system);
+
+}  // namespace pectora

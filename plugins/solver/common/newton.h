@@ -1,0 +1,36 @@
+// Minimisation by projected Newton steps, each solved by conjugate gradients with the inverse 3 x 3 blocks as metric.
+#pragma once
+
+#include "plugins/solver/common/objective.h"
+
+#include "kernel/physics/hessian.h"
+
+namespace pectora {
+
+/// Inexact Newton with line search. Far from the minimum the Hessian is projected, so that every direction leads down; near
+/// it the true one is used, which converges faster where springs are squeezed. Forcing min(1/2, sqrt(|g| / |g0|))
+/// (Eisenstat and Walker 1996; Nocedal and Wright, Numerical Optimization, 7.1).
+class Newton final : public Minimiser {
+ public:
+  /// Every term of the system must have a Hessian. The system outlives this.
+  explicit Newton(const System& system);
+  /// Whether they have.
+  static bool isFor(const System& system);
+  Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) override;
+  /// Moves the free nodes of `next` as the linear answer to its driven nodes, which have moved since the rest state `x`:
+  /// dx = -H_ff^-1 H_fd dx_d, with the projected Hessian and to one percent.
+  void predict(const Objective& objective, const NodeVectors& x, NodeVectors& next, const std::function<void()>& poll);
+  /// Products of the Hessian with a vector so far.
+  int products() const { return products_; }
+
+ private:
+  void linearise(const Objective& objective, const NodeVectors& x, bool projected);
+  bool solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll);
+
+  std::unique_ptr<Hessian> hessian_;
+  std::vector<Symmetric3> metric_;
+  NodeVectors direction_, r_, z_, p_, hp_;
+  int products_ = 0;
+};
+
+}  // namespace pectora

@@ -1,0 +1,137 @@
+#include "plugins/solver/common/quasi_static.h"
+
+#include "plugins/solver/common/movement.h"
+#include "plugins/solver/common/newton.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora {
+namespace {
+
+// Between load steps it is enough to be near.
+constexpr double kLooseTolerance = 1e-2;
+constexpr double kLeastPartOfStep = 1.0 / 16;
+// A step may end this far from its prediction, as a part of the bar's movement.
+constexpr double kOffCourse = 0.5;
+
+double largestDistance(const NodeVectors& a, const NodeVectors& b, std::size_t count) {
+  double largest = 0;
+  for (std::size_t i = 0; i < count; ++i) largest = std::max(largest, distance(a[i], b[i]));
+  return largest;
+}
+
+class QuasiStatic final : public Session {
+ public:
+  QuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser, int stepIterations)
+      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations) {
+    if (Newton::isFor(system)) predictor_ = std::make_unique<Newton>(system);
+  }
+
+  Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
+    Objective objective(system_);
+    Solution solution;
+    Evaluation end;
+    follow(objective, Movement(system_, drive, start), solution, end, host);
+    if (start && solution.status != SolveStatus::converged) {
+      host.info("the given start did not lead to rest; beginning from rest");
+      follow(objective, Movement(system_, drive, nullptr), solution, end, host);
+    }
+    solution.forceEvaluations = objective.evaluations();
+    solution.residual = end.residual.force;
+    solution.relativeResidual = end.relativeResidual();
+    solution.energy = end.energy;
+    return solution;
+  }
+
+ private:
+  // Steps along the movement. What the solution has counted before is kept.
+  void follow(const Objective& objective, const Movement& movement, Solution& solution, Evaluation& end, Host& host) {
+    solution.positions = movement.beginning();
+    solution.message.clear();
+    NodeVectors& x = solution.positions;
+    const int most = solution.iterations + settings_.maxIterations;
+    const double way = movement.longestWay();
+    const double wholeStep = 1 / std::max(1.0, std::ceil(way / (predictor_ ? settings_.loadStep : 0.1 * settings_.loadStep)));
+    const double leastStep = wholeStep * kLeastPartOfStep;
+    double t = 0, step = wholeStep;
+    for (;;) {
+      const double next = t + 1.001 * step >= 1 ? 1 : t + step;
+      const bool isLast = next == 1, isLeast = step < 2 * leastStep;
+      NodeVectors trial = x;
+      movement.apply(next, trial);
+      if (predictor_) predictor_->predict(objective, x, trial, [&] { host.checkCancel(); });
+      const NodeVectors predicted = trial;
+      const int left = most - solution.iterations;
+      const double tolerance = isLast ? settings_.tolerance : std::max(settings_.tolerance, kLooseTolerance);
+      const Outcome outcome = minimise(objective, trial, end, tolerance, isLast ? left : std::min(left, stepIterations_), next, solution, host);
+      const bool isExhausted = solution.iterations >= most;
+      // A last step that comes near, but not to its tolerance, would not get nearer in smaller steps.
+      const bool isNear = outcome != Outcome::diverged && end.isWithin(kLooseTolerance);
+      const bool isOnCourse = isLeast || !predictor_ || largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
+      if ((isNear && isOnCourse) || isLeast || isExhausted) {
+        x = std::move(trial);
+        t = next;
+        solution.status = isLast ? statusOf(outcome) : SolveStatus::stalled;
+        if (isLast || isExhausted || !isNear) break;
+        step = std::min(wholeStep, 2 * step);
+        continue;
+      }
+      step = 0.5 * step;
+      host.info(fmt::format("a load step of {:.3g} mm {}; halving it", 2 * step * way, isNear ? "left its path" : "did not come to rest"));
+    }
+    if (solution.status == SolveStatus::converged) return;
+    if (t < 1)
+      solution.message = fmt::format("only {:.0f} % of the movement could be carried out; the largest force stays at the {}", 100 * t,
+                                     system_.nodeName(end.residual.node));
+    else if (solution.iterations >= most)
+      solution.message = fmt::format("{} iterations were not enough", settings_.maxIterations);
+    else
+      solution.message = "the energy falls no further; the largest force stays at the " + system_.nodeName(end.residual.node);
+  }
+
+  Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& end, double tolerance, int iterations, double part,
+                   Solution& solution, Host& host) {
+    Watch watch;
+    watch.poll = [&] { host.checkCancel(); };
+    watch.iteration = [&](const Evaluation& now) {
+      host.checkCancel();
+      solution.energyHistory.push_back(now.energy);
+      host.progress(progress(now.relativeResidual(), tolerance) * part,
+                    fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
+    };
+    return minimiser_->minimise(objective, x, end, {tolerance, iterations}, solution.iterations, watch);
+  }
+
+  // Decades of the residual from 1 to the tolerance.
+  static double progress(double relative, double tolerance) {
+    return std::clamp(std::log(std::max(relative, 1e-300)) / std::log(tolerance), 0.0, 1.0);
+  }
+  static SolveStatus statusOf(Outcome outcome) {
+    return outcome == Outcome::converged ? SolveStatus::converged
+           : outcome == Outcome::stalled ? SolveStatus::stalled : SolveStatus::diverged;
+  }
+
+  const System& system_;
+  QuasiStaticSettings settings_;
+  std::unique_ptr<Minimiser> minimiser_;
+  int stepIterations_;
+  std::unique_ptr<Newton> predictor_;   // null if an effect has no Hessian
+};
+
+}  // namespace
+
+void QuasiStaticSettings::describe(Visitor& v) {
+  v.real("tolerance", tolerance, "", {1e-12, 0.5}, {1e-8, 1e-2}, "Stop when the largest force on a free point is this part of the largest spring force");
+  v.integer("max_iterations", maxIterations, "", {1, 1e8}, {100, 10000}, "Stop unconverged after so many iterations in all");
+  v.real("load_step", loadStep, "mm", {1e-3, 1e6}, {1, 50}, "How far the bar may move at once; a step that does not come to rest is halved");
+}
+
+std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings,
+                                         std::unique_ptr<Minimiser> minimiser, int stepIterations) {
+  return std::make_unique<QuasiStatic>(system, settings, std::move(minimiser), stepIterations);
+}
+
+}  // namespace pectora

@@ -1,0 +1,163 @@
+#include "plugins/solver/common/relaxation.h"
+
+#include "plugins/solver/common/movement.h"
+#include "plugins/solver/common/node_algebra.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pectora {
+namespace {
+
+constexpr double kMmPerM = 1000;  // N / kg is m/s^2
+
+class Relaxation final : public Session {
+ public:
+  Relaxation(const System& system, RelaxationSettings settings, std::vector<double> mass, double step, double frequencyBound, MakeScheme make)
+      : system_(system), settings_(settings), mass_(std::move(mass)), step_(step), frequencyBound_(frequencyBound), make_(std::move(make)) {}
+
+  Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
+    const Movement movement(system_, drive, start);
+    const auto scheme = make_(system_, mass_, movement.beginning(), step_);
+    Solution solution;
+    double damping = settings_.damping, slowest = 0;
+    double leastResidual = INFINITY;
+    const double negligible = negligibleForce(system_);
+    int leastAt = 0;
+    NodeVectors lastGood = scheme->positions();
+
+    for (int n = 1; n <= settings_.maxIterations; ++n) {
+      const double t = settings_.ramp > 0 ? std::min(1.0, double(n) / settings_.ramp) : 1;
+      movement.apply(t, scheme->positions());
+      const NodeVectors here = t >= 1 && n % 20 == 0 ? scheme->positions() : NodeVectors();
+      scheme->step(damping);
+      solution.iterations = n;
+
+      // The best damping is critical for the slowest mode, which the motion itself shows.
+      if (settings_.damping == 0) {
+        const double seen = std::sqrt(scheme->rayleighQuotient());
+        slowest = n < 10 ? seen : 0.95 * slowest + 0.05 * seen;
+        damping = std::min(2 * slowest, 0.5 * frequencyBound_);
+      }
+      if (n % 20 != 0) continue;
+
+      // Judge the forces of every twentieth state once the bar is in place.
+      host.checkCancel();
+      const Residual residual = largestResidual(system_, scheme->gradient());
+      if (!std::isfinite(residual.force) || !std::isfinite(scheme->energy())) {
+        solution.status = SolveStatus::diverged;
+        solution.message = "a force at the " + system_.nodeName(residual.node) + " is not finite";
+        break;
+      }
+      solution.energyHistory.push_back(scheme->energy());
+      if (here.size() == 0) continue;
+      lastGood = here;
+      record(solution, *scheme, residual);
+      host.progress(progress(solution.relativeResidual), fmt::format("step {}, residual {:.1e}", n, solution.relativeResidual));
+      if (residual.force <= settings_.tolerance * scheme->largestForce() || residual.force <= negligible) {
+        solution.status = SolveStatus::converged;
+        break;
+      }
+      if (residual.force < 0.99 * leastResidual) leastResidual = residual.force, leastAt = n;
+      if (n - leastAt > std::max(2000, settings_.maxIterations / 4)) {
+        solution.status = SolveStatus::stalled;
+        solution.message = "the largest force stays at the " + system_.nodeName(residual.node);
+        break;
+      }
+    }
+    if (solution.status == SolveStatus::stalled && solution.message.empty())
+      solution.message = fmt::format("{} steps were not enough", settings_.maxIterations);
+    solution.positions = std::move(lastGood);
+    solution.forceEvaluations = scheme->evaluations();
+    return solution;
+  }
+
+ private:
+  void record(Solution& solution, const ExplicitScheme& scheme, const Residual& residual) const {
+    solution.residual = residual.force;
+    solution.relativeResidual = scheme.largestForce() > 0 ? residual.force / scheme.largestForce() : 0;
+    solution.energy = scheme.energy();
+  }
+  // Decades of the residual from 1 to the tolerance.
+  double progress(double relative) const {
+    return std::clamp(std::log(std::max(relative, 1e-300)) / std::log(settings_.tolerance), 0.0, 1.0);
+  }
+
+  const System& system_;
+  RelaxationSettings settings_;
+  std::vector<double> mass_;
+  double step_, frequencyBound_;
+  MakeScheme make_;
+};
+
+}  // namespace
+
+double frequencyBoundSquared(const System& system, const std::vector<double>& mass) {
+  const std::vector<double> stiffness = system.stiffnessBound();
+  double bound = 0;
+  for (std::size_t i = 0; i < system.freeNodes; ++i) bound = std::max(bound, stiffness[i] / mass[i] * kMmPerM);
+  return bound;
+}
+
+double stableStep(double frequencyBound, double damping) {
+  const double z = damping / (2 * frequencyBound);
+  return 2 / frequencyBound * (std::sqrt(1 + z * z) - z);
+}
+
+ExplicitScheme::ExplicitScheme(const System& system, std::vector<double> mass, NodeVectors start, double step)
+    : system_(system), mass_(std::move(mass)), step_(step), now_(std::move(start)), before_(now_),
+      gradient_(system.rest.size()), gradientBefore_(system.rest.size()) {}
+
+void ExplicitScheme::step(double damping) {
+  std::swap(gradient_, gradientBefore_);
+  energy_ = system_.evaluate(now_, gradient_, largestForce_);
+  ++evaluations_;
+
+  // Rayleigh quotient of the last displacement: dx . dg / dx . M dx.
+  double change = 0, moved = 0;
+  for (std::size_t i = 0; i < system_.freeNodes; ++i) {
+    const Vec3 dx = now_[i] - before_[i];
+    change += dot(dx, gradient_[i] - gradientBefore_[i]);
+    moved += mass_[i] * dot(dx, dx);
+  }
+  rayleigh_ = started_ && moved > 0 ? std::max(0.0, change / moved) * kMmPerM : 0;
+
+  for (std::size_t i = 0; i < system_.freeNodes; ++i) {
+    const Vec3 x = now_[i];
+    now_.set(i, advance(x, before_[i], gradient_[i] * (-kMmPerM / mass_[i]), damping, !started_));
+    before_.set(i, x);
+  }
+  started_ = true;
+}
+
+void RelaxationSettings::describe(Visitor& v) {
+  v.real("tolerance", tolerance, "", {1e-12, 0.5}, {1e-6, 1e-2}, "Stop when the largest force on a free point is this part of the largest spring force");
+  v.integer("max_iterations", maxIterations, "", {1, 1e8}, {1000, 50000}, "Stop unconverged after so many steps");
+  v.integer("ramp", ramp, "", {0, 1e7}, {0, 1000}, "Steps over which the bar is brought to its place");
+  v.real("time_step", timeStep, "s", {0, 10}, {0, 0.01}, "Step; refused beyond the stability limit; 0: nine tenths of it");
+  v.real("damping", damping, "1/s", {0, 1e9}, {0, 1000}, "Velocity damping c in a = F/m - c v; 0: critical for the slowest mode seen");
+  v.choice("mass", mass, {"scaled", "tissue"}, "Masses of the points: in proportion to their stiffness, which is fastest and gives the same end, or the tissue's own");
+}
+
+std::unique_ptr<Session> makeRelaxation(const System& system, const RelaxationSettings& settings, const std::string& scheme, MakeScheme make) {
+  std::vector<double> mass = system.mass;
+  if (settings.mass == "scaled") {
+    // The same frequency bound at every node, with the mean of the tissue's masses.
+    const std::vector<double> stiffness = system.stiffnessBound();
+    double stiffnessSum = 0, massSum = 0;
+    for (std::size_t i = 0; i < system.freeNodes; ++i) stiffnessSum += stiffness[i], massSum += mass[i];
+    for (std::size_t i = 0; i < system.freeNodes; ++i) mass[i] = massSum * stiffness[i] / stiffnessSum;
+  }
+  const double bound = std::sqrt(frequencyBoundSquared(system, mass));
+  // With automatic damping the limit is that of the greatest damping it may choose.
+  const double limit = stableStep(bound, settings.damping > 0 ? settings.damping : 0.5 * bound);
+  if (settings.timeStep > limit)
+    throw Error("the step is beyond the stability limit of " + scheme)
+        .of("time_step").given(fmt::format("{:g} s", settings.timeStep)).allowed(fmt::format("up to {:.6g} s for this scene", limit)).advise("Leave it 0 for a safe step");
+  const double step = settings.timeStep > 0 ? settings.timeStep : 0.9 * limit;
+  return std::make_unique<Relaxation>(system, settings, std::move(mass), step, bound, std::move(make));
+}
+
+}  // namespace pectora

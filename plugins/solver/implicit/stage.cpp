@@ -1,0 +1,94 @@
+#include "plugins/solver/implicit/implicit.h"
+
+#include "plugins/solver/common/movement.h"
+
+#include "kernel/stage/solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+using namespace pectora;
+
+struct Settings {
+  double tolerance = 1e-6, timeStep = 0.02, ramp = 0.2, damping = 0;
+  int maxIterations = 2000;
+  std::string scheme = "euler";
+};
+
+class ImplicitSession final : public Session {
+ public:
+  ImplicitSession(const System& system, const Settings& settings) : system_(system), settings_(settings) {}
+
+  Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
+    const auto scheme = settings_.scheme == "bdf2" ? ImplicitScheme::bdf2 : ImplicitScheme::backwardEuler;
+    const Movement movement(system_, drive, start);
+    ImplicitStepper stepper(system_, system_.mass, movement.beginning(), settings_.timeStep, settings_.damping, scheme);
+    Solution solution;
+    Watch watch;
+    watch.poll = [&] { host.checkCancel(); };
+    watch.iteration = [&](const Evaluation&) { host.checkCancel(); };
+    // A tenth of the tolerance within a step leaves the rest of it to the motion.
+    const Minimiser::Limits limits{0.1 * settings_.tolerance, 100};
+    const int rampSteps = int(std::ceil(settings_.ramp / settings_.timeStep));
+    for (int n = 1; n <= settings_.maxIterations; ++n) {
+      const double t = n < rampSteps ? double(n) / rampSteps : 1;
+      movement.apply(t, stepper.positions());
+      const Outcome outcome = stepper.step(limits, watch);
+      const Evaluation& e = stepper.evaluateRest();
+      solution.iterations = n;
+      solution.energyHistory.push_back(e.energy);
+      solution.energy = e.energy;
+      solution.residual = e.residual.force;
+      solution.relativeResidual = e.relativeResidual();
+      if (outcome == Outcome::diverged) {
+        solution.status = SolveStatus::diverged;
+        solution.message = "a force at the " + system_.nodeName(e.residual.node) + " is not finite";
+        break;
+      }
+      host.progress(t * std::clamp(std::log(std::max(solution.relativeResidual, 1e-300)) / std::log(settings_.tolerance), 0.0, 1.0),
+                    fmt::format("step {}, residual {:.1e}", n, solution.relativeResidual));
+      if (t < 1 || !e.isWithin(settings_.tolerance)) {
+        solution.message = fmt::format("{} steps were not enough; the largest force stays at the {}", n, system_.nodeName(e.residual.node));
+        continue;
+      }
+      solution.status = SolveStatus::converged;
+      solution.message.clear();
+      break;
+    }
+    solution.positions = stepper.positions();
+    solution.forceEvaluations = stepper.evaluations();
+    return solution;
+  }
+
+ private:
+  const System& system_;
+  Settings settings_;
+};
+
+class ImplicitSolver final : public Solver {
+ public:
+  void describe(Visitor& v) override {
+    v.real("tolerance", settings_.tolerance, "", {1e-12, 0.5}, {1e-8, 1e-2}, "Stop when the largest force on a free point is this part of the largest spring force");
+    v.integer("max_iterations", settings_.maxIterations, "", {1, 1e8}, {100, 10000}, "Stop unconverged after so many steps in time");
+    v.choice("scheme", settings_.scheme, {"euler", "bdf2"}, "Backward Euler, of order 1 and strongly damped, or BDF2, of order 2");
+    v.real("time_step", settings_.timeStep, "s", {1e-9, 1e3}, {0.001, 0.1}, "Step; any is stable");
+    v.real("ramp", settings_.ramp, "s", {0, 1e6}, {0, 2}, "Time over which the bar is brought to its place");
+    v.real("damping", settings_.damping, "1/s", {0, 1e9}, {0, 1000}, "Velocity damping c in a = F/m - c v, beside that of the scheme");
+  }
+  Needs needs() const override { return {.hessian = true}; }
+  std::unique_ptr<Session> prepare(const System& system, Host&) override {
+    return std::make_unique<ImplicitSession>(system, settings_);
+  }
+
+ private:
+  Settings settings_;
+};
+
+}  // namespace
+
+PECTORA_SOLVER(ImplicitSolver, {.id = "solver.implicit", .version = "1.0",
+                                .summary = "Implicit steps in time until rest, by backward Euler or BDF2; stable with any step",
+                                .references = "Baraff and Witkin, SIGGRAPH 1998; Hairer and Wanner, Solving ODEs II, 1996, V.1"})
