@@ -83,8 +83,8 @@ void addStatistics(std::vector<Fact>& facts, const std::string& region, const Di
 
 // The way back, and what follows from both ways.
 void addReverse(std::vector<Fact>& facts, const std::string& region, const DistanceStatistics& there, const DistanceStatistics& back) {
-  if (there.count == 0 || back.count == 0) return;
   addStatistics(facts, "reverse_" + region, back);
+  if (there.count == 0 || back.count == 0) return;
   const SymmetricDistances both = symmetric(there, back);
   facts.push_back({"symmetric_" + region + "_mean", both.meanAbsolute, "mm"});
   facts.push_back({"symmetric_" + region + "_rms", both.rms, "mm"});

@@ -92,6 +92,35 @@ __attribute__((always_inline)) inline void boxDistances(const TriangleBvh::Node&
   std::memcpy(squared, &sum, sizeof sum);
 }
 
+// The same to eight flat cylinders.
+__attribute__((always_inline)) inline void discDistances(const TriangleBvh::Discs& discs, const float p[3], float slack, float squared[kWide]) {
+  Floats along{}, whole{}, radius, half;
+  for (int a = 0; a < 3; ++a) {
+    Floats d, axis;
+    load(d, discs.center[a]);
+    load(axis, discs.axis[a]);
+    d = p[a] - d;
+    along += d * axis;
+    whole += d * d;
+  }
+  load(radius, discs.radius);
+  load(half, discs.half);
+  // across^2 = whole - along^2 errs by some 1e-7 of whole.
+  const Floats error = whole * 2e-6f;
+  Floats high = (along > 0.0f ? along : -along) - half - slack, across = whole - along * along - error;
+  high = high > 0.0f ? high : Floats{};
+  across = across > 0.0f ? across : Floats{};
+  Floats root{};
+  for (int i = 0; i < kWide; ++i) root[i] = std::sqrt(across[i]);
+  root = root - radius - slack;
+  root = root > 0.0f ? root : Floats{};
+  const Floats sum = high * high + root * root - error;
+  Floats before;
+  load(before, squared);
+  before = sum > before ? sum : before;
+  std::memcpy(squared, &before, sizeof before);
+}
+
 // Squared distances from p to a block's triangles (Ericson 2005, 5.1.5, all regions at once, the first that holds chosen last).
 __attribute__((always_inline)) inline void triangleDistances(const TriangleBvh::Block& block, const double p[3], double squared[kWide]) {
   Doubles ap[3], ab[3], ac[3], d1{}, d2{}, abab{}, abac{}, acac{};
@@ -146,7 +175,7 @@ struct Entry {
 };
 
 PECTORA_CLONES
-void searchTree(const std::vector<TriangleBvh::Node>* levels, int top, const TriangleBvh::Block* blocks, std::int32_t blockCount,
+void searchTree(const std::vector<TriangleBvh::Node>* levels, int top, const std::vector<TriangleBvh::Discs>* discs, int discLevels, const TriangleBvh::Block* blocks, std::int32_t blockCount,
                 const double p[3], const float pf[3], float slack, NearestTriangle* found) {
   NearestTriangle best = *found;
   Entry stack[128];
@@ -166,6 +195,7 @@ void searchTree(const std::vector<TriangleBvh::Node>* levels, int top, const Tri
     }
     float squared[kWide];
     boxDistances(levels[entry.level - 1][entry.index], pf, slack, squared);
+    if (entry.level <= discLevels) discDistances(discs[entry.level - 1][entry.index], pf, slack, squared);
     const std::int32_t below = entry.level - 1, count = below == 0 ? blockCount : std::int32_t(levels[below - 1].size());
     const std::int32_t first = kWide * entry.index;
     const int children = std::min<std::int32_t>(kWide, count - first), base = size;
@@ -188,6 +218,7 @@ TriangleBvh::TriangleBvh(const Mesh& mesh) {
   if (sorted.empty()) return;
   fillBlocks(mesh, sorted);
   fillNodes();
+  fillDiscs();
 }
 
 void TriangleBvh::order(const Mesh& mesh, std::vector<std::int32_t>& sorted) {
@@ -273,13 +304,55 @@ void TriangleBvh::fillNodes() {
   }
 }
 
+void TriangleBvh::fillDiscs() {
+  constexpr std::size_t kDiscLevels = 2;
+  discs_.resize(std::min(kDiscLevels, levels_.size()));
+  std::size_t perChild = 1;   // blocks below one child
+  for (auto& level : discs_) {
+    level.resize(levels_[&level - discs_.data()].size());
+    parallelBlocks(level.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j)
+        for (int i = 0; i < kWide; ++i) {
+          const std::size_t first = std::min(blocks_.size(), (kWide * j + i) * perChild), last = std::min(blocks_.size(), first + perChild);
+          // The axis is the mean normal, the centre the middle of the first corners.
+          Vec3 normal, middle;
+          for (std::size_t b = first; b < last; ++b)
+            for (int k = 0; k < kWide; ++k) {
+              const Block& t = blocks_[b];
+              normal += cross({t.ab[0][k], t.ab[1][k], t.ab[2][k]}, {t.ac[0][k], t.ac[1][k], t.ac[2][k]});
+              middle += Vec3{t.a[0][k], t.a[1][k], t.a[2][k]} / double(kWide * (last - first));
+            }
+          normal = normalized(normal);
+          Discs& discs = level[j];
+          float axis[3], center[3];
+          for (int a = 0; a < 3; ++a) discs.axis[a][i] = axis[a] = float(normal[a]), discs.center[a][i] = center[a] = float(middle[a] - center_[a]);
+          const Vec3 n{axis[0], axis[1], axis[2]}, c{center[0] + center_.x, center[1] + center_.y, center[2] + center_.z};
+          double half = 0, across = 0;
+          for (std::size_t b = first; b < last; ++b)
+            for (int k = 0; k < kWide; ++k) {
+              const Block& t = blocks_[b];
+              const Vec3 corner{t.a[0][k], t.a[1][k], t.a[2][k]};
+              for (const Vec3& v : {corner, corner + Vec3{t.ab[0][k], t.ab[1][k], t.ab[2][k]}, corner + Vec3{t.ac[0][k], t.ac[1][k], t.ac[2][k]}}) {
+                const double along = dot(v - c, n);
+                half = std::max(half, std::abs(along));
+                across = std::max(across, dot(v - c, v - c) - along * along);
+              }
+            }
+          discs.half[i] = float(half * (1 + 1e-5));
+          discs.radius[i] = float(std::sqrt(across) * (1 + 1e-5));
+        }
+    });
+    perChild *= kWide;
+  }
+}
+
 void TriangleBvh::search(Vec3 p, NearestTriangle& best) const {
   const Vec3 local = p - center_;
   const double here[3] = {p.x, p.y, p.z};
   const float about[3] = {float(local.x), float(local.y), float(local.z)};
   // Rounding p, the boxes and their difference errs by less than four units in the last place of the largest coordinate.
   const float largest = std::max({extent_, std::abs(about[0]), std::abs(about[1]), std::abs(about[2])});
-  searchTree(levels_.data(), int(levels_.size()), blocks_.data(), std::int32_t(blocks_.size()), here, about, largest * 5e-7f, &best);
+  searchTree(levels_.data(), int(levels_.size()), discs_.data(), int(discs_.size()), blocks_.data(), std::int32_t(blocks_.size()), here, about, largest * 5e-7f, &best);
 }
 
 }  // namespace pectora

@@ -32,6 +32,10 @@ class TriangleBvh {
   struct Node {
     float low[3][kWide], high[3][kWide];   ///< boxes of the children, about the centre, rounded outwards
   };
+  /// Flat cylinders around a node's children: a sheet that lies askew fills little of its box.
+  struct Discs {
+    float center[3][kWide], axis[3][kWide], radius[kWide], half[kWide];   ///< radius across, half height along the axis, rounded up
+  };
   struct Block {
     double a[3][kWide], ab[3][kWide], ac[3][kWide];
     std::int32_t id[kWide];
@@ -42,11 +46,13 @@ class TriangleBvh {
   void order(const Mesh& mesh, std::vector<std::int32_t>& sorted);
   void fillBlocks(const Mesh& mesh, const std::vector<std::int32_t>& sorted);
   void fillNodes();
+  void fillDiscs();
 
   Vec3 center_;
   float extent_ = 0;                        // largest coordinate about the centre, mm
   std::vector<Block> blocks_;               // leaves, in the tree's order
   std::vector<std::vector<Node>> levels_;   // node j of level l has the children 8 j ... 8 j + 7 of level l - 1 (of the blocks)
+  std::vector<std::vector<Discs>> discs_;   // of the lowest levels, where the surface is nearly flat
 };
 
 }  // namespace pectora

@@ -15,7 +15,7 @@ namespace pectora {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
-constexpr int kHoldOut = 10;        // every tenth point
+constexpr int kHoldOut = 20;        // every twentieth point
 constexpr std::size_t kFewest = 30; // points that an alignment needs at least
 
 enum Pair : char { kPaired, kFar, kBorder, kNormal, kChanged, kKinds };
@@ -23,7 +23,7 @@ enum Pair : char { kPaired, kFar, kBorder, kNormal, kChanged, kKinds };
 // What is known of one moving point in the present iteration.
 struct Sample {
   Vec3 start, startNormal;   // before any iteration
-  Vec3 point, direction;     // now, and the unit gradient of its distance
+  Vec3 point, direction;     // now, and the normal of its counterpart's triangle
   double distance = 0;
   int near = -1;
   Pair pair = kFar;
@@ -49,14 +49,16 @@ class Alignment {
   }
 
   Registration run() {
+    const std::size_t finest = std::min(all_.size(), std::size_t(settings_.finePoints));
     for (std::size_t wanted = std::size_t(settings_.coarsePoints);; wanted *= 10) {
-      const bool isLast = wanted >= all_.size();
+      // No level is worth its while that has more than a third of the last one's points.
+      const bool isLast = 3 * wanted >= finest;
       std::vector<Sample> level;
-      const std::size_t count = isLast ? all_.size() : wanted;
+      const std::size_t count = isLast ? finest : wanted;
       level.reserve(count);
       for (std::size_t i = 0; i < count; ++i) level.push_back(all_[i * all_.size() / count]);
       // A coarse level only has to come near: the scatter of its points is what it can see.
-      runLevel(level, isLast ? settings_.tolerance : std::max(settings_.tolerance, 0.02));
+      runLevel(level, isLast ? settings_.tolerance : std::max(settings_.tolerance, 0.05));
       if (isLast) return report(level);
     }
   }
@@ -97,9 +99,9 @@ class Alignment {
     const SurfaceHit hit = tree_.closest(s.point, near);
     s.near = hit.triangle;
     s.distance = hit.distance;
-    // The gradient of the signed distance; on the surface itself, the face's normal.
+    // The face's normal. (The direction from the counterpart to the point would turn with every noise at edges and corners.)
     const Vec3 normal = tree_.normal(hit.triangle);
-    s.direction = std::abs(hit.distance) > 1e-9 ? (s.point - hit.point) / hit.distance : normal;
+    s.direction = normal;
     s.pair = judge(s, hit, normal);
   }
 
@@ -157,7 +159,7 @@ class Alignment {
     Registration result;
     result.method = "icp";
     result.map = map_;
-    result.rms = std::sqrt(equations.squares / equations.weights);
+    result.rms = std::sqrt(equations.squares / double(equations.count));
     auto& details = result.details;
     details.push_back({"status", std::string(!converged_ ? "stopped" : solved_.undetermined > 0 ? "undetermined" : "converged"), ""});
     details.push_back({"iterations", double(iterations_), ""});
@@ -170,7 +172,10 @@ class Alignment {
     details.push_back({"points_with_another_normal", double(kinds[kNormal]), ""});
     details.push_back({"points_in_changed_region", double(kinds[kChanged]), ""});
 
-    // Points that no iteration saw, where they have a counterpart and are no outliers.
+    // Points that no iteration saw, where they have a counterpart and are no outliers; as many as a twentieth of the others.
+    const std::size_t held = std::min(heldOut_.size(), samples.size() / kHoldOut + 1);
+    for (std::size_t i = 0; i < held; ++i) heldOut_[i] = heldOut_[i * heldOut_.size() / held];
+    heldOut_.resize(held);
     pairAll(heldOut_);
     double squares = 0;
     std::size_t count = 0;
@@ -188,14 +193,16 @@ class Alignment {
     details.push_back({"weakest_direction", fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", isTurn ? "turn about" : "shift along", axis(0), axis(1), axis(2)), ""});
     details.push_back({"weakest_sd", std::sqrt(variance * w.dot(solved_.inverse * w)), "mm"});
     double expected = 0;
-    for (const Sample& s : samples)
+    const std::size_t stride = samples.size() / 5000 + 1;
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < samples.size(); i += stride, ++seen)
       for (int a = 0; a < 3; ++a) {
         Vec3 unit;
         unit[a] = 1;
-        const Vector6 j = equations_.row(s.point, unit);
+        const Vector6 j = equations_.row(samples[i].point, unit);
         expected += variance * j.dot(solved_.inverse * j);
       }
-    details.push_back({"expected_error", std::sqrt(expected / double(samples.size())), "mm"});
+    details.push_back({"expected_error", std::sqrt(expected / double(seen)), "mm"});
     return result;
   }
 

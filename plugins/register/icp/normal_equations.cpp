@@ -18,15 +18,13 @@ void NormalEquations::add(Vec3 p, Vec3 n, double residual, double weight) {
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r <= c; ++r) matrix(r, c) += weight * j(r) * j(c);
   right += weight * residual * j;
-  weights += weight;
-  squares += weight * residual * residual;
+  squares += residual * residual;
   ++count;
 }
 
 void NormalEquations::add(const NormalEquations& other) {
   matrix += other.matrix;
   right += other.right;
-  weights += other.weights;
   squares += other.squares;
   count += other.count;
 }

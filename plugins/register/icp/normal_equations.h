@@ -17,8 +17,8 @@ struct NormalEquations {
   double radius = 1;
   Matrix6 matrix = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
-  double weights = 0, squares = 0;   ///< sums of w and of w r^2
-  std::size_t count = 0;             ///< residuals with a weight
+  double squares = 0;       ///< sum of r^2
+  std::size_t count = 0;    ///< number of residuals
 
   /// How the distance of a point at p along the unit direction n changes with the unknowns.
   Vector6 row(Vec3 p, Vec3 n) const;

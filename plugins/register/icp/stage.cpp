@@ -15,8 +15,9 @@ class Icp final : public Stage {
     v.real("change_margin", settings_.changeMargin, "mm", {0, 200}, {0, 40}, "What lies within this of it is left out, too");
     v.reals("exclude", ball_, "mm", {-1e6, 1e6}, "A ball that is left out: x, y, z and radius, in the fixed surface's coordinates");
     v.integer("coarse_points", settings_.coarsePoints, "", {100, 1000000}, {1000, 20000}, "Points of the first level; each further one has ten times as many");
+    v.integer("fine_points", settings_.finePoints, "", {100, 100000000}, {10000, 1000000}, "Points of the last level, at most");
     v.integer("max_iterations", settings_.maxIterations, "", {1, 10000}, {20, 200}, "Iterations over all levels");
-    v.real("tolerance", settings_.tolerance, "mm", {1e-9, 10}, {1e-4, 0.1}, "Converged when no point moves further in one iteration");
+    v.real("tolerance", settings_.tolerance, "mm", {1e-9, 10}, {1e-3, 0.1}, "Converged when no point moves further in one iteration");
   }
 
   Outputs run(const Inputs& inputs, Host& host) override {

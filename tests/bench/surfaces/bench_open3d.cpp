@@ -83,6 +83,6 @@ void icpOpen3d(benchmark::State& state) {
 
 }  // namespace
 
-BENCHMARK_CAPTURE(distanceOpen3d, closestPoints, false)->Arg(317)->Arg(1001)->Unit(benchmark::kSecond)->UseRealTime();
-BENCHMARK_CAPTURE(distanceOpen3d, rayParity, true)->Arg(317)->Unit(benchmark::kSecond)->UseRealTime();
-BENCHMARK(icpOpen3d)->Arg(317)->Arg(1001)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(kSeeds);
+BENCHMARK_CAPTURE(distanceOpen3d, closestPoints, false)->Arg(317)->Arg(1001)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(distanceOpen3d, rayParity, true)->Arg(317)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(icpOpen3d)->Arg(317)->Arg(1001)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime()->Iterations(kSeeds);
