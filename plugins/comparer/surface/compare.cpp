@@ -1,8 +1,7 @@
 #include "plugins/comparer/surface/compare.h"
 
-#include "plugins/comparer/surface/surface_tree.h"
+#include "plugins/common/surface/changed.h"
 
-#include "kernel/physics/workers.h"
 #include "kernel/stage/error.h"
 
 #include <algorithm>
@@ -12,125 +11,144 @@
 namespace pectora {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+using Poll = std::function<void(double)>;
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<SurfaceHit> hits(const SurfaceTree& tree, const std::vector<Vec3>& points, const std::function<void(double)>& poll) {
-  std::vector<SurfaceHit> found(points.size());
-  const std::size_t blocks = (points.size() + kBlock - 1) / kBlock;
-  // In rounds, so that progress and cancel are seen between them.
-  constexpr std::size_t kRound = 32;
-  for (std::size_t first = 0; first < blocks; first += kRound) {
-    poll(double(first) / double(blocks));
-    parallelFor(std::min(kRound, blocks - first), [&](std::size_t b) {
-      const std::size_t begin = (first + b) * kBlock, end = std::min(points.size(), begin + kBlock);
-      for (std::size_t i = begin; i < end; ++i) found[i] = tree.closest(points[i]);
-    });
-  }
-  return found;
-}
+// Why a point takes no part in the statistics.
+enum LeftOut { kTakesPart = 0, kBeyondBorder = 1, kTooFar = 2 };
 
-// Which points of the reference belong to the pit: those that moved, and their neighbours within the margin.
-std::vector<bool> pitPoints(const Mesh& reference, const SurfaceTree& unchanged, const CompareSettings& settings,
-                            const std::function<void(double)>& poll) {
-  const std::vector<SurfaceHit> change = hits(unchanged, reference.points, poll);
-  std::vector<bool> moved(reference.points.size());
-  std::vector<Vec3> core;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    moved[i] = !change[i].onBorder && std::abs(change[i].distance) > settings.pitThreshold;
-    if (moved[i]) core.push_back(reference.points[i]);
-  }
-  // The margin, by a grid of cells as wide as the margin.
-  if (core.empty() || settings.pitMargin <= 0) return moved;
-  const double cell = settings.pitMargin;
-  const auto key = [&](Vec3 p) {
-    return std::array<std::int64_t, 3>{std::int64_t(std::floor(p.x / cell)), std::int64_t(std::floor(p.y / cell)), std::int64_t(std::floor(p.z / cell))};
-  };
-  std::vector<std::pair<std::array<std::int64_t, 3>, Vec3>> cells;
-  for (const Vec3& p : core) cells.emplace_back(key(p), p);
-  const auto less = [](const auto& a, const auto& b) { return a.first < b.first; };
-  std::sort(cells.begin(), cells.end(), less);
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    const Vec3 p = reference.points[i];
-    const auto home = key(p);
-    for (int n = 0; n < 27 && !moved[i]; ++n) {
-      const std::array<std::int64_t, 3> there{home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1};
-      const auto [begin, end] = std::equal_range(cells.begin(), cells.end(), std::pair{there, Vec3{}}, less);
-      for (auto c = begin; c != end && !moved[i]; ++c) moved[i] = distance(c->second, p) <= settings.pitMargin;
-    }
-  }
-  return moved;
+LeftOut judge(const SurfaceHit& hit, const CompareSettings& settings) {
+  if (settings.isPaper) return kTakesPart;
+  if (std::abs(hit.distance) > settings.maxDistance) return kTooFar;
+  return hit.onBorder ? kBeyondBorder : kTakesPart;
 }
 
 Histogram makeHistogram(const std::vector<double>& distances, double width) {
   Histogram h;
   h.binWidth = width;
-  if (distances.empty()) return h;
   const auto [low, high] = std::minmax_element(distances.begin(), distances.end());
-  h.low = std::floor(*low / width) * width;
-  h.counts.assign(std::size_t((*high - h.low) / width) + 1, 0);
-  for (double d : distances) ++h.counts[std::min(h.counts.size() - 1, std::size_t((d - h.low) / width))];
+  // A bin so narrow that there would be millions of them is widened.
+  constexpr double kMostBins = 1e5;
+  h.binWidth = std::max(width, (*high - *low) / kMostBins);
+  h.low = std::floor(*low / h.binWidth) * h.binWidth;
+  h.counts.assign(std::size_t((*high - h.low) / h.binWidth) + 1, 0);
+  for (double d : distances) ++h.counts[std::min(h.counts.size() - 1, std::size_t((d - h.low) / h.binWidth))];
   return h;
+}
+
+// The distances of the points that take part, by the region of the reference that they face.
+struct Parts {
+  std::vector<double> overlap, pit;
+  std::vector<std::vector<double>> regions;
+
+  explicit Parts(const CompareSettings& settings) : regions(settings.regions.size()) {}
+  void add(double d, bool isPit, Vec3 place, const CompareSettings& settings) {
+    overlap.push_back(d);
+    if (isPit) pit.push_back(d);
+    for (std::size_t r = 0; r < regions.size(); ++r)
+      if (settings.regions[r].contains(place)) regions[r].push_back(d);
+  }
+};
+
+// The way back: from the reference's points to the sample.
+void measureBack(const Mesh& sample, const Mesh& reference, const std::vector<bool>& pit, const CompareSettings& settings, const Poll& poll, Comparison& result) {
+  const std::vector<SurfaceHit> found = SurfaceTree(sample).closest(reference.points, poll);
+  std::vector<double> field(found.size(), kNoValue);
+  Parts parts(settings);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (judge(found[i], settings) != kTakesPart) continue;
+    field[i] = -found[i].distance;
+    parts.add(field[i], !pit.empty() && pit[i], reference.points[i], settings);
+  }
+  result.reverseOverlap = statistics(std::move(parts.overlap));
+  result.reversePit = statistics(std::move(parts.pit));
+  for (std::size_t r = 0; r < parts.regions.size(); ++r) result.regions[r].reverse = statistics(std::move(parts.regions[r]));
+  auto colored = std::make_shared<Mesh>(reference);
+  colored->fields = {{"distance", "mm", std::move(field)}};
+  result.reference = std::move(colored);
 }
 
 }  // namespace
 
-Comparison compareSurfaces(std::shared_ptr<const Value> sample, const Mesh& reference, const Mesh* unchanged,
-                           const CompareSettings& settings, const std::function<void(double)>& poll) {
+Comparison compareSurfaces(std::shared_ptr<const Value> sample, const Surfaces& surfaces, const CompareSettings& settings, const Poll& poll) {
   const auto* mesh = dynamic_cast<const Mesh*>(sample.get());
   const auto* cloud = dynamic_cast<const Points*>(sample.get());
   const std::vector<Vec3>& points = mesh ? mesh->points : cloud->points;
+  const Mesh& reference = surfaces.reference;
   if (points.empty()) throw Error("the surface to be measured has no points").of("sample");
-  for (const Vec3& p : points)
-    if (!isFinite(p)) throw Error("the surface to be measured has a coordinate that is not a finite number").of("sample").advise("Clean the scan first");
+  for (const std::vector<Vec3>* all : {&points, &reference.points})
+    for (const Vec3& p : *all)
+      if (!isFinite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > TriangleBvh::kHuge)
+        throw Error("a surface has a coordinate that is not a finite number, or beyond any body").of(all == &points ? "sample" : "reference").advise("Clean the scan first");
 
-  const SurfaceTree tree(reference);
-  const std::vector<SurfaceHit> found = hits(tree, points, [&](double f) { poll(0.5 * f); });
+  // Distances to all surfaces.
+  const bool measuresBack = mesh && settings.bothWays && !mesh->triangles.empty();
+  const int steps = 1 + 2 * (surfaces.unchanged != nullptr) + (surfaces.copied != nullptr) + measuresBack;
+  int step = 0;
+  const auto next = [&] { return [&poll, steps, now = step++](double f) { poll((now + f) / steps); }; };
+  const std::vector<SurfaceHit> found = SurfaceTree(reference).closest(points, next());
+  std::vector<SurfaceHit> before, copied;
   std::vector<bool> pit;
-  std::vector<SurfaceHit> before;
-  if (unchanged) {
-    const SurfaceTree unchangedTree(*unchanged);
-    pit = pitPoints(reference, unchangedTree, settings, poll);
-    before = hits(unchangedTree, points, [&](double f) { poll(0.5 + 0.5 * f); });
+  if (surfaces.unchanged) {
+    const SurfaceTree unchanged(*surfaces.unchanged);
+    pit = changedPoints(reference, unchanged, settings.pitThreshold, settings.pitMargin, next());
+    before = unchanged.closest(points, next());
   }
+  if (surfaces.copied) copied = SurfaceTree(*surfaces.copied).closest(points, next());
 
-  // A point takes part if both surfaces have a counterpart of it, so that baseline and comparison see the same points.
+  // Sort the points by region.
   Comparison result;
   result.name = settings.name;
-  std::vector<double> field(points.size(), kNoValue), overlap, inPit, baseOverlap, basePit;
-  const auto counts = [&](const SurfaceHit& hit) { return !hit.onBorder && std::abs(hit.distance) <= settings.maxDistance; };
+  PointField distances{"distance", "mm", std::vector<double>(points.size(), kNoValue)}, leftOut{"left_out", "", std::vector<double>(points.size())};
+  PointField inPit{"pit", "", std::vector<double>(before.size())}, unchangedDistances{"unchanged_distance", "mm", std::vector<double>(before.size(), kNoValue)};
+  Parts here(settings), unchangedParts(settings), copiedParts(settings);
+  std::vector<double> everywhere(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!counts(found[i]) || (unchanged && !counts(before[i]))) {
+    everywhere[i] = found[i].distance;
+    LeftOut why = judge(found[i], settings);
+    if (why == kTakesPart && surfaces.unchanged) why = judge(before[i], settings);
+    if (why == kTakesPart && surfaces.copied) why = judge(copied[i], settings);
+    leftOut.values[i] = why;
+    if (why != kTakesPart) {
       ++result.excluded;
       continue;
     }
-    field[i] = found[i].distance;
-    overlap.push_back(found[i].distance);
-    if (!unchanged) continue;
-    baseOverlap.push_back(before[i].distance);
     const auto& corners = reference.triangles[found[i].triangle];
-    if (pit[corners[0]] || pit[corners[1]] || pit[corners[2]]) {
-      inPit.push_back(found[i].distance);
-      basePit.push_back(before[i].distance);
+    const bool isPit = !pit.empty() && (pit[corners[0]] || pit[corners[1]] || pit[corners[2]]);
+    distances.values[i] = found[i].distance;
+    here.add(found[i].distance, isPit, found[i].point, settings);
+    if (surfaces.unchanged) {
+      inPit.values[i] = isPit;
+      unchangedDistances.values[i] = before[i].distance;
+      unchangedParts.add(before[i].distance, isPit, found[i].point, settings);
     }
+    if (surfaces.copied) copiedParts.add(copied[i].distance, isPit, found[i].point, settings);
   }
-  if (overlap.empty())
+  if (here.overlap.empty())
     throw Error("the two surfaces do not overlap: no point has a counterpart").advise("Register them first, and check the units");
-  result.histogram = makeHistogram(overlap, settings.binWidth);
-  result.overlap = statistics(std::move(overlap));
-  result.pit = statistics(std::move(inPit));
-  result.baselineOverlap = statistics(std::move(baseOverlap));
-  result.baselinePit = statistics(std::move(basePit));
 
-  // The sample with its distances, for pictures and files.
-  PointField distances{"distance", "mm", std::move(field)};
+  result.everywhere = statistics(std::move(everywhere));
+  result.histogram = makeHistogram(here.overlap, settings.binWidth);
+  result.overlap = statistics(std::move(here.overlap));
+  result.pit = statistics(std::move(here.pit));
+  result.baselineOverlap = statistics(std::move(unchangedParts.overlap));
+  result.baselinePit = statistics(std::move(unchangedParts.pit));
+  result.copiedOverlap = statistics(std::move(copiedParts.overlap));
+  result.copiedPit = statistics(std::move(copiedParts.pit));
+  for (std::size_t r = 0; r < settings.regions.size(); ++r)
+    result.regions.push_back({settings.regions[r].name, statistics(std::move(here.regions[r])), {}, statistics(std::move(unchangedParts.regions[r]))});
+  if (measuresBack) measureBack(*mesh, reference, pit, settings, next(), result);
+
+  // The sample with its figures point by point, for pictures and files.
+  std::vector<PointField> fields{std::move(distances), std::move(leftOut)};
+  if (surfaces.unchanged) fields.insert(fields.end(), {std::move(inPit), std::move(unchangedDistances)});
   if (mesh) {
     auto colored = std::make_shared<Mesh>(*mesh);
-    colored->fields = {std::move(distances)};
+    colored->fields = std::move(fields);
     result.sample = std::move(colored);
   } else {
     auto colored = std::make_shared<Points>(*cloud);
-    colored->fields = {std::move(distances)};
+    colored->fields = std::move(fields);
     result.sample = std::move(colored);
   }
   return result;

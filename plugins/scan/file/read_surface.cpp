@@ -19,11 +19,13 @@ bool endsWith(const std::string& name, const char* ending) {
 RawSurface readAny(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw Error("the file is empty");
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return readPly(bytes);
+  if (bytes.starts_with("# vtk DataFile")) return readVtk(bytes);
+  if (endsWith(name, ".vtk")) throw Error("a VTK file begins with the line \"# vtk DataFile Version\", this one does not");
   if (endsWith(name, ".ply")) throw Error("a PLY file begins with the line \"ply\", this one does not");
   if (endsWith(name, ".stl")) return readStl(bytes);
   if (endsWith(name, ".obj")) return readObj(bytes);
   if (endsWith(name, ".txt") || endsWith(name, ".xyz") || endsWith(name, ".asc") || bytes.starts_with("%")) return readFastScanText(bytes);
-  throw Error("the format of the file is not known").allowed("FastSCAN text (.txt), .ply, .stl, .obj").advise("Export the scan in one of these");
+  throw Error("the format of the file is not known").allowed("FastSCAN text (.txt), .ply, .stl, .obj, .vtk").advise("Export the scan in one of these");
 }
 
 // Points that are not finite leave, with the triangles that use them.

@@ -23,6 +23,7 @@ RawSurface readSurface(std::string_view bytes, const std::string& name);
 RawSurface readFastScanText(std::string_view bytes);   ///< "% ..." comments, then "x y z" a line
 RawSurface readPly(std::string_view bytes);            ///< ASCII, binary of both byte orders
 RawSurface readStl(std::string_view bytes);            ///< ASCII, binary, big-endian binary; equal corners are merged
+RawSurface readVtk(std::string_view bytes);            ///< legacy text files of polygons or points, old and new lists of cells
 RawSurface readObj(std::string_view bytes);            ///< v, vn, f with any slashes and negative indices; polygons become fans
 
 /// Merges points that are bit for bit equal and mends the triangles' indices (STL repeats its corners).

@@ -15,7 +15,7 @@ using namespace pectora;
 class ScanFile final : public Stage {
  public:
   void describe(Visitor& v) override {
-    v.text("path", path_, TextRole::inputPath, "The scanner's file: FastSCAN text, PLY, STL or OBJ");
+    v.text("path", path_, TextRole::inputPath, "The scanner's file: FastSCAN text, PLY, STL, OBJ or VTK");
     v.choice("units", units_, {"", "mm", "cm", "m", "inch"}, "Unit of the file's coordinates; empty: millimetres if that makes it the size of a torso, else it is asked for");
   }
 
@@ -56,6 +56,6 @@ class ScanFile final : public Stage {
 }  // namespace
 
 PECTORA_STAGE(ScanFile, {.id = "scan.file", .version = "1.0",
-                         .summary = "Reads a 3-D scan: FastSCAN text, PLY, STL or OBJ, as points or triangles",
+                         .summary = "Reads a 3-D scan: FastSCAN text, PLY, STL, OBJ or VTK, as points or triangles",
                          .references = "FastSCAN user manual (ARANZ), export formats",
                          .outputs = {{"scan", {"Points", "Mesh"}}}})

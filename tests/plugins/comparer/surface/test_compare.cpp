@@ -27,7 +27,7 @@ const auto kNoPoll = [](double) {};
 }  // namespace
 
 TEST(Compare, FindsAParallelShiftExactlyAndOutsideIsPositive) {
-  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(0, 4)), wall(0), nullptr, {}, kNoPoll);
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(0, 4)), {wall(0)}, {}, kNoPoll);
   EXPECT_NEAR(c.overlap.mean, 4, 1e-12);
   EXPECT_NEAR(c.overlap.sd, 0, 1e-9);
   EXPECT_EQ(c.overlap.count, 39u * 39);
@@ -37,17 +37,17 @@ TEST(Compare, FindsAParallelShiftExactlyAndOutsideIsPositive) {
 TEST(Compare, TakesPointClouds) {
   auto cloud = std::make_shared<Points>();
   cloud->points = {{1, -2, 3}, {4, 3, -7}};
-  const Comparison c = compareSurfaces(cloud, wall(0), nullptr, {}, kNoPoll);
+  const Comparison c = compareSurfaces(cloud, {wall(0)}, {}, kNoPoll);
   EXPECT_NEAR(c.overlap.max, 2, 1e-12);
   EXPECT_NEAR(c.overlap.min, -3, 1e-12);
   const auto& sample = dynamic_cast<const Points&>(*c.sample);
-  ASSERT_EQ(sample.fields.size(), 1u);
+  ASSERT_EQ(sample.fields.size(), 2u);
   EXPECT_NEAR(sample.fields[0].values[0], 2, 1e-12);
 }
 
 TEST(Compare, SeesThePitWhereTheReferenceDiffersFromBefore) {
   const Mesh before = wall(30), after = wall(5);
-  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(3)), after, &before, {}, kNoPoll);
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(3)), {after, &before}, {}, kNoPoll);
   EXPECT_GT(c.pit.count, 100u);
   EXPECT_LT(c.pit.count, c.overlap.count);
   EXPECT_NEAR(c.pit.max, 2, 0.05);
@@ -60,14 +60,14 @@ TEST(Compare, SeesThePitWhereTheReferenceDiffersFromBefore) {
 TEST(Compare, HasSkillZeroForASampleThatIsTheUnchangedSurface) {
   // A scan that shows no change judges the prediction of a change as worse than nothing.
   const Mesh before = wall(30), after = wall(5);
-  const Comparison c = compareSurfaces(std::make_shared<Mesh>(before), after, &before, {}, kNoPoll);
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(before), {after, &before}, {}, kNoPoll);
   EXPECT_NEAR(c.baselinePit.rms, 0, 1e-9);
   EXPECT_GT(c.pit.rms, 5);
 }
 
 TEST(Compare, HistogramCountsEveryPointOnce) {
   const Mesh before = wall(30);
-  const Comparison c = compareSurfaces(std::make_shared<Mesh>(before), wall(0), nullptr, {}, kNoPoll);
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(before), {wall(0)}, {}, kNoPoll);
   std::size_t total = 0;
   for (std::size_t n : c.histogram.counts) total += n;
   EXPECT_EQ(total, c.overlap.count);
@@ -76,9 +76,99 @@ TEST(Compare, HistogramCountsEveryPointOnce) {
 
 TEST(Compare, RefusesSurfacesThatDoNotMeet) {
   auto cloud = std::make_shared<Points>();
-  EXPECT_THROW(compareSurfaces(cloud, wall(0), nullptr, {}, kNoPoll), Error);
+  EXPECT_THROW(compareSurfaces(cloud, {wall(0)}, {}, kNoPoll), Error);
   cloud->points = {{0, 500, 0}};
-  EXPECT_THROW(compareSurfaces(cloud, wall(0), nullptr, {}, kNoPoll), Error);
+  EXPECT_THROW(compareSurfaces(cloud, {wall(0)}, {}, kNoPoll), Error);
   cloud->points = {{0, NAN, 0}};
-  EXPECT_THROW(compareSurfaces(cloud, wall(0), nullptr, {}, kNoPoll), Error);
+  EXPECT_THROW(compareSurfaces(cloud, {wall(0)}, {}, kNoPoll), Error);
+}
+
+TEST(Compare, MeasuresBothWaysAndPositiveStaysOutside) {
+  // A plane 4 mm outside of a larger one: every measure is 4.
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(0, 4)), {wall(0)}, {}, kNoPoll);
+  EXPECT_NEAR(c.reverseOverlap.mean, 4, 1e-12);
+  const SymmetricDistances both = symmetric(c.overlap, c.reverseOverlap);
+  EXPECT_NEAR(both.meanAbsolute, 4, 1e-12);
+  EXPECT_NEAR(both.rms, 4, 1e-12);
+  EXPECT_NEAR(both.hd95, 4, 1e-12);
+  EXPECT_NEAR(both.hausdorff, 4, 1e-12);
+  ASSERT_TRUE(c.reference);
+  EXPECT_EQ(c.reference->fields.at(0).values.size(), 41u * 41);
+}
+
+TEST(Compare, SeesFromTheOtherSideWhatTheSampleMisses) {
+  // The sample is flat and coarse, the reference has a pit: only the way back finds its bottom exactly.
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(0)), {wall(20)}, {}, kNoPoll);
+  EXPECT_NEAR(c.reverseOverlap.max, 20, 1e-9);
+  EXPECT_LT(c.overlap.max, 20);
+  EXPECT_NEAR(symmetric(c.overlap, c.reverseOverlap).hausdorff, 20, 1e-9);
+}
+
+TEST(Compare, MeasuresOneWayIfAskedOrGivenACloud) {
+  CompareSettings settings;
+  settings.bothWays = false;
+  EXPECT_EQ(compareSurfaces(std::make_shared<Mesh>(wall(0)), {wall(1)}, settings, kNoPoll).reverseOverlap.count, 0u);
+  auto cloud = std::make_shared<Points>();
+  cloud->points = {{1, -2, 3}};
+  const Comparison c = compareSurfaces(cloud, {wall(0)}, {}, kNoPoll);
+  EXPECT_EQ(c.reverseOverlap.count, 0u);
+  EXPECT_EQ(c.parts().size(), 1u);
+}
+
+TEST(Compare, CountsEveryPointInThePapersRows) {
+  // Half of the sample lies beyond the reference's border, 3 mm outside of its plane.
+  auto cloud = std::make_shared<Points>();
+  cloud->points = {{0, -3, 0}, {110, 0, 0}};
+  const Comparison full = compareSurfaces(cloud, {wall(0)}, {}, kNoPoll);
+  EXPECT_EQ(full.overlap.count, 1u);
+  EXPECT_EQ(full.everywhere.count, 2u);
+  EXPECT_NEAR(full.everywhere.mean, (3 + 10) / 2.0, 1e-12);
+  EXPECT_NEAR(full.everywhere.sd, 3.5, 1e-12);
+  const auto& leftOut = dynamic_cast<const Points&>(*full.sample).fields.at(1);
+  EXPECT_EQ(leftOut.values, (std::vector<double>{0, 1}));
+  CompareSettings settings;
+  settings.isPaper = true;
+  const Comparison paper = compareSurfaces(cloud, {wall(0)}, settings, kNoPoll);
+  EXPECT_EQ(paper.overlap.count, 2u);
+  EXPECT_EQ(paper.excluded, 0u);
+}
+
+TEST(Compare, HoldsAPredictionAgainstSkinThatCopiesTheBone) {
+  const Mesh before = wall(30), after = wall(5), copied = wall(0);
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(4)), {after, &before, &copied}, {}, kNoPoll);
+  EXPECT_EQ(c.copiedPit.count, c.pit.count);
+  EXPECT_NEAR(c.skillAgainstCopy(), 1 - c.pit.rms / c.copiedPit.rms, 1e-12);
+  EXPECT_NEAR(c.skillAgainstCopy(), 0.75, 0.02);   // 1 mm off against 4 mm off
+}
+
+TEST(Compare, MeasuresRegionsOfOnesOwn) {
+  CompareSettings settings;
+  settings.regions = {parseRegion("middle = ball 0 0 0 20"), parseRegion("right=box -100 -50 -9 9 -99 99")};
+  const Comparison c = compareSurfaces(std::make_shared<Mesh>(wall(0, 2)), {wall(0)}, settings, kNoPoll);
+  ASSERT_EQ(c.regions.size(), 2u);
+  EXPECT_EQ(c.regions[0].name, "middle");
+  EXPECT_EQ(c.regions[0].distances.count, 49u);   // grid points within 4 steps of the middle
+  EXPECT_EQ(c.regions[1].distances.count, 10u * 39);
+  EXPECT_NEAR(c.regions[1].reverse.mean, 2, 1e-12);
+}
+
+TEST(Compare, RefusesRegionsThatAreNone) {
+  for (const char* text : {"", "a", "a = ", "a = ball 1 2 3", "a = ball 1 2 3 -4", "a = box 0 1 0 1 1 0", "a = cone 1 2 3 4", "a b = ball 1 2 3 4", "pit = ball 1 2 3 4", "a = ball 1 2 3 4 x",
+                           "A-B = ball 1 2 3 4"})
+    EXPECT_THROW(parseRegion(text), Error) << text;
+}
+
+TEST(Compare, IsTheSameTurnedInsideOutButForTheSign) {
+  Mesh inside = wall(10);
+  for (auto& t : inside.triangles) std::swap(t[1], t[2]);
+  const auto sample = std::make_shared<Mesh>(wall(7, 1));
+  const Comparison a = compareSurfaces(sample, {wall(10)}, {}, kNoPoll), b = compareSurfaces(sample, {inside}, {}, kNoPoll);
+  EXPECT_DOUBLE_EQ(a.overlap.mean, -b.overlap.mean);
+  EXPECT_DOUBLE_EQ(a.overlap.max, -b.overlap.min);
+}
+
+TEST(Compare, RefusesHugeCoordinates) {
+  auto cloud = std::make_shared<Points>();
+  cloud->points = {{0, 1e200, 0}};
+  EXPECT_THROW(compareSurfaces(cloud, {wall(0)}, {}, kNoPoll), Error);
 }

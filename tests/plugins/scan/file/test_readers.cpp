@@ -79,6 +79,12 @@ std::string obj() {
   return text + "vn 0 0 1\nf 1//1 3//1 2//1\nf 1 2 4\nf -4/7 -1/7 -2/7\nf 2 \\\n3 4\n";
 }
 
+const char* const kVtkHead = "# vtk DataFile Version 3.0\nFastSCAN\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 100 0 0\n0 100 0\n0 0 100\n";
+std::string vtk() { return std::string(kVtkHead) + "POLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\nPOINT_DATA 4\nSCALARS a float 1\nLOOKUP_TABLE default\n1 2 3 4\n"; }
+std::string vtk5() {
+  return std::string(kVtkHead) + "POLYGONS 5 12\nOFFSETS vtktypeint64\n0 3 6 9 12\nCONNECTIVITY vtktypeint64\n0 2 1 0 1 3\n0 3 2 1 2 3\n";
+}
+
 void expectTetrahedron(const RawSurface& s) {
   ASSERT_EQ(s.points.size(), 4u);
   ASSERT_EQ(s.triangles.size(), 4u);
@@ -97,6 +103,8 @@ TEST(ReadSurface, ReadsOneTetrahedronFromEveryFormat) {
   expectTetrahedron(readSurface(binaryStl(false), "A.STL"));
   expectTetrahedron(readSurface(binaryStl(true), "a.stl"));
   expectTetrahedron(readSurface(obj(), "a.obj"));
+  expectTetrahedron(readSurface(vtk(), "a.vtk"));
+  expectTetrahedron(readSurface(vtk5(), "a.vtk"));
 }
 
 TEST(ReadSurface, ReadsFastScanTextWithAWrongCountAndKeepsItsSweepsApart) {
@@ -113,6 +121,25 @@ TEST(ReadSurface, SurvivesAWrongFacetCountInAnStlHeader) {
   const RawSurface s = readSurface(bytes, "a.stl");
   expectTetrahedron(s);
   EXPECT_EQ(s.notes.size(), 1u);
+}
+
+TEST(ReadSurface, ReadsVtkStripsNormalsAndWrongCountsAndRefusesBinary) {
+  const std::string head(kVtkHead);
+  const RawSurface strip = readSurface(head + "TRIANGLE_STRIPS 1 5\n4 0 1 2 3\n", "a.vtk");
+  ASSERT_EQ(strip.triangles.size(), 2u);
+  EXPECT_EQ(strip.triangles[1], (std::array<int, 3>{2, 1, 3}));
+  const RawSurface cloud = readSurface(head + "VERTICES 4 8\n1 0 1 1 1 2 1 3\nPOINT_DATA 4\nNORMALS n float\n0 0 2 0 0 1 0 1 0 1 0 0\n", "a.vtk");
+  EXPECT_TRUE(cloud.triangles.empty());
+  ASSERT_EQ(cloud.normals.size(), 4u);
+  EXPECT_EQ(cloud.normals[0], (Vec3{0, 0, 1}));
+  std::string wrong = vtk();
+  wrong.replace(wrong.find("POINTS 4"), 8, "POINTS 9");
+  expectTetrahedron(readSurface(wrong, "a.vtk"));
+  EXPECT_EQ(readSurface(wrong, "a.vtk").notes.size(), 1u);
+  EXPECT_EQ(readSurface(head + "POLYGONS 2 8\n3 0 1 2 3 0 1 9\n", "a.vtk").triangles.size(), 1u);
+  EXPECT_THROW(readSurface("# vtk DataFile Version 3.0\nx\nBINARY\nDATASET POLYDATA\n", "a.vtk"), Error);
+  EXPECT_THROW(readSurface("# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\n", "a.vtk"), Error);
+  EXPECT_THROW(readSurface("hello", "a.vtk"), Error);
 }
 
 TEST(ReadSurface, LeavesOutPointsThatAreNotFiniteAndSaysSo) {
@@ -148,7 +175,7 @@ TEST(ReadSurface, NeverCrashesOnMutatedFiles) {
   // 20,000 seeded mutations: read into finite points with good indices, or refused.
   std::mt19937 random(11);
   const std::pair<std::string, const char*> seeds[] = {{asciiPly(), "a.ply"}, {binaryPly(false), "a.ply"}, {binaryPly(true), "a.ply"}, {asciiStl(), "a.stl"},
-                                                       {binaryStl(false), "a.stl"}, {obj(), "a.obj"}, {"% x\n1 2 3\n4 5 6\n7 8 9\n", "a.txt"}};
+                                                       {binaryStl(false), "a.stl"}, {obj(), "a.obj"}, {vtk(), "a.vtk"}, {vtk5(), "a.vtk"}, {"% x\n1 2 3\n4 5 6\n7 8 9\n", "a.txt"}};
   int read = 0;
   for (int i = 0; i < 20000; ++i) {
     auto [bytes, name] = seeds[i % std::size(seeds)];

@@ -35,11 +35,11 @@ TEST(RealFiles, EveryMeshLoadsOrIsRefusedWithASentence) {
   if (!fs::exists(folder + "/mesh")) GTEST_SKIP() << "PECTORA_DATA is absent: " << folder;
   int loaded = 0;
   std::vector<std::string> refused;
-  for (const char* part : {"/mesh", "/surface", "/scan"}) {
+  for (const char* part : {"/mesh", "/surface", "/scan", "/registration"}) {
     for (const auto& entry : fs::recursive_directory_iterator(folder + part)) {
       std::string ending = entry.path().extension().string();
       std::transform(ending.begin(), ending.end(), ending.begin(), ::tolower);
-      if (ending != ".ply" && ending != ".stl" && ending != ".obj" && ending != ".xyz") continue;
+      if (ending != ".ply" && ending != ".stl" && ending != ".obj" && ending != ".xyz" && ending != ".vtk") continue;
       try {
         const RawSurface s = readFile(entry.path().string());
         ++loaded;

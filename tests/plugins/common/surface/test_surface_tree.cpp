@@ -1,5 +1,6 @@
-#include "plugins/comparer/surface/surface_tree.h"
+#include "plugins/common/surface/surface_tree.h"
 
+#include "kernel/physics/workers.h"
 #include "kernel/stage/error.h"
 
 #include <gtest/gtest.h>
@@ -107,5 +108,83 @@ TEST(SurfaceTree, RefusesMeshesThatAreNone) {
   EXPECT_THROW(SurfaceTree{Mesh{}}, Error);
   mesh = cube();
   for (Vec3& p : mesh.points) p = {1, 1, 1};
+  EXPECT_THROW(SurfaceTree{mesh}, Error);
+}
+
+TEST(SurfaceTree, GivesTheSameBitsForManyPointsAsOneByOneAndForAnyNumberOfThreads) {
+  const Mesh mesh = sheet(70);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(-5, 75), off(-8, 8);
+  std::vector<Vec3> points(5000);
+  for (Vec3& p : points) p = {along(random), off(random), along(random)};
+  const int before = threads();
+  std::vector<std::vector<SurfaceHit>> all;
+  for (int count : {1, 2, 3}) {
+    setThreads(count);
+    all.push_back(SurfaceTree(mesh).closest(points, [](double) {}));
+  }
+  setThreads(before);
+  const SurfaceTree tree(mesh);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfaceHit alone = tree.closest(points[i]);
+    for (const auto& hits : all) {
+      ASSERT_EQ(hits[i].triangle, alone.triangle) << i;
+      ASSERT_EQ(hits[i].distance, alone.distance) << i;
+    }
+    ASSERT_NEAR(std::abs(alone.distance), bruteForce(mesh, points[i]), 1e-12);
+  }
+}
+
+TEST(SurfaceTree, TakesAnyTriangleToBeginWith) {
+  const Mesh mesh = sheet(12);
+  const SurfaceTree tree(mesh);
+  for (const Vec3 p : {Vec3{3.3, 1, 4.4}, {-20, 7, 3}, {5, 0, 5}}) {
+    const SurfaceHit alone = tree.closest(p);
+    for (int near = 0; near < int(mesh.triangles.size()); near += 7) EXPECT_EQ(tree.closest(p, near).triangle, alone.triangle);
+  }
+  // A corner of the mesh itself, where the distance to begin with is exactly zero.
+  for (int near = 0; near < 40; ++near) EXPECT_EQ(tree.closest(mesh.points[40], near).distance, 0);
+}
+
+TEST(SurfaceTree, IsExactFarFromTheOriginAndFarFromTheMesh) {
+  Mesh far = cube();
+  for (Vec3& p : far.points) p += {1e6, -2e6, 3e6};
+  const SurfaceTree tree(far);
+  EXPECT_NEAR(tree.closest({1e6 + 3, -2e6, 3e6}).distance, 2, 1e-9);
+  EXPECT_NEAR(tree.closest({1e6 + 0.5, -2e6, 3e6}).distance, -0.5, 1e-9);
+  EXPECT_NEAR(SurfaceTree(cube()).closest({1e9, 0, 0}).distance, 1e9 - 1, 1e-6);
+}
+
+TEST(SurfaceTree, SeesThinTrianglesAndPassesOverThoseWithoutArea) {
+  // A fan of needles 100 mm long and 1e-7 mm wide, beside triangles without area.
+  Mesh needles;
+  for (int i = 0; i < 40; ++i) {
+    needles.points.insert(needles.points.end(), {{0, 0, double(i)}, {100, 0, double(i)}, {100, 0, i + 1e-7}});
+    needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    needles.triangles.push_back({3 * i, 3 * i, 3 * i + 1});
+  }
+  const SurfaceTree tree(needles);
+  for (int i = 0; i < 40; ++i) {
+    const SurfaceHit hit = tree.closest({50, 3, i + 0.2});
+    EXPECT_NEAR(std::abs(hit.distance), std::hypot(3, 0.2), 1e-6);
+    EXPECT_EQ(hit.triangle, 2 * i);
+  }
+}
+
+TEST(SurfaceTree, FindsItsWayOnNonManifoldMeshes) {
+  // Three sheets that share an edge, one triangle given twice.
+  Mesh fins;
+  fins.points = {{0, 0, 0}, {0, 0, 10}, {10, 0, 5}, {-10, 0, 5}, {0, 10, 5}};
+  fins.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 1, 4}, {0, 1, 4}};
+  const SurfaceTree tree(fins);
+  EXPECT_NEAR(std::abs(tree.closest({5, -2, 5}).distance), 2, 1e-12);
+  EXPECT_FALSE(tree.closest({0, -2, 5}).onBorder);
+  EXPECT_EQ(tree.closest({4, 4, 5}).triangle, 0);
+  EXPECT_EQ(tree.closest({1, 4, 5}).triangle, 2);
+}
+
+TEST(SurfaceTree, RefusesCoordinatesBeyondAnyBody) {
+  Mesh mesh = cube();
+  mesh.points[2].x = 1e200;
   EXPECT_THROW(SurfaceTree{mesh}, Error);
 }

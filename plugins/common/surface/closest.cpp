@@ -1,4 +1,4 @@
-#include "plugins/comparer/surface/closest.h"
+#include "plugins/common/surface/closest.h"
 
 #include <algorithm>
 #include <cmath>
