@@ -23,8 +23,9 @@ void Newton::linearise(const Objective& objective, const NodeVectors& x, bool pr
   }
 }
 
-// Conjugate gradients for H d = -g. False: a direction of negative curvature was met, and d leads down but no further.
-bool Newton::solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll) {
+// Conjugate gradients for H d = -g. Where the model falls along a direction without end (it is a ridge or a saddle), that
+// direction is taken as far as if the curvature had the other sign, and is the last: d always leads down.
+void Newton::solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll) {
   const std::size_t free = objective.system().freeNodes;
   const auto applyMetric = [&] {
     for (std::size_t i = 0; i < free; ++i) z_.set(i, metric_[i] * r_[i]);
@@ -45,10 +46,9 @@ bool Newton::solve(const Objective& objective, const NodeVectors& gradient, doub
     if (const Inertia* inertia = objective.inertia())
       for (std::size_t i = 0; i < free; ++i) hp_.add(i, p_[i] * inertia->weight[i]);
     const double curvature = dot(p_, hp_, free);
-    // No further along a direction in which the model does not rise; a first one is taken with the metric's own length.
     if (!(curvature > 1e-14 * rz)) {
-      if (n == 0) axpy(1, p_, direction_, free);
-      return false;
+      axpy(rz / std::max(-curvature, 1e-2 * rz), p_, direction_, free);
+      return;
     }
     const double step = rz / curvature;
     axpy(step, p_, direction_, free);
@@ -58,7 +58,6 @@ bool Newton::solve(const Objective& objective, const NodeVectors& gradient, doub
     scaleAndAdd(z_, next / rz, p_, free);
     rz = next;
   }
-  return true;
 }
 
 void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVectors& next, const std::function<void()>& poll) {
@@ -76,24 +75,19 @@ Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation&
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
   const double firstNorm = std::sqrt(dot(e.gradient, e.gradient, free));
-  // The true Hessian once the residual is small, and never again after it misled.
-  bool trustsTrue = true;
+  // The true Hessian once the residual is small; after it misled, once it is ten times smaller than it was then.
+  double trueBelow = 1e-2;
   for (int n = 0; n < limits.iterations; ++n) {
     watch.iteration(e);
     if (e.isWithin(limits.tolerance)) return Outcome::converged;
     ++iterations;
     const double forcing = std::min(0.5, std::sqrt(std::sqrt(dot(e.gradient, e.gradient, free)) / firstNorm));
-    bool projected = !(trustsTrue && e.isWithin(1e-2));
+    const bool projected = !e.isWithin(trueBelow);
     linearise(objective, x, projected);
-    if (!solve(objective, e.gradient, forcing, watch.poll) && !projected) {
-      trustsTrue = false;
-      projected = true;
-      linearise(objective, x, true);
-      solve(objective, e.gradient, forcing, watch.poll);
-    }
+    solve(objective, e.gradient, forcing, watch.poll);
     if (searchLine(objective, x, e, direction_, 1, trial) > 0) continue;
     if (!projected) {
-      trustsTrue = false;
+      trueBelow = 0.1 * e.relativeResidual();
       continue;
     }
     // Down the metric's steepest descent, and no way down at all is the end.

@@ -25,7 +25,7 @@ class Newton final : public Minimiser {
 
  private:
   void linearise(const Objective& objective, const NodeVectors& x, bool projected);
-  bool solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll);
+  void solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll);
 
   std::unique_ptr<Hessian> hessian_;
   std::vector<Symmetric3> metric_;

@@ -13,7 +13,7 @@ namespace {
 
 // Between load steps it is enough to be near.
 constexpr double kLooseTolerance = 1e-2;
-constexpr double kLeastPartOfStep = 1.0 / 16;
+constexpr double kLeastPartOfStep = 1.0 / 4;
 // A step may end this far from its prediction, as a part of the bar's movement.
 constexpr double kOffCourse = 0.5;
 
@@ -57,6 +57,7 @@ class QuasiStatic final : public Session {
     const double wholeStep = 1 / std::max(1.0, std::ceil(way / (predictor_ ? settings_.loadStep : 0.1 * settings_.loadStep)));
     const double leastStep = wholeStep * kLeastPartOfStep;
     double t = 0, step = wholeStep;
+    int halved = 0;
     for (;;) {
       const double next = t + 1.001 * step >= 1 ? 1 : t + step;
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
@@ -80,8 +81,9 @@ class QuasiStatic final : public Session {
         continue;
       }
       step = 0.5 * step;
-      host.info(fmt::format("a load step of {:.3g} mm {}; halving it", 2 * step * way, isNear ? "left its path" : "did not come to rest"));
+      ++halved;
     }
+    if (halved > 0) host.info(fmt::format("{} load steps left their path or did not come to rest, and were halved", halved));
     if (solution.status == SolveStatus::converged) return;
     if (t < 1)
       solution.message = fmt::format("only {:.0f} % of the movement could be carried out; the largest force stays at the {}", 100 * t,

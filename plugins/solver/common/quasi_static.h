@@ -15,8 +15,7 @@ struct QuasiStaticSettings {
 };
 
 /// A session around a minimiser. Every load step begins at the linear answer to the bar's movement, and one that comes to
-/// rest elsewhere, or nowhere, is halved, to 1/16 at the least: so that the wall follows its path from rest and does not
-/// fall into another minimum on the way. If a given start does not lead to rest, it begins again from rest. `stepIterations` is what one load step may take. Where an effect has no Hessian there is no linear answer:
+/// rest elsewhere, or nowhere, is halved, to 1/4 at the least: so that the wall keeps to its path from rest where it can. If a given start does not lead to rest, it begins again from rest. `stepIterations` is what one load step may take. Where an effect has no Hessian there is no linear answer:
 /// the steps are a tenth as long.
 std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings,
                                          std::unique_ptr<Minimiser> minimiser, int stepIterations);
