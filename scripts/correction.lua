@@ -5,6 +5,7 @@ local p = parameters{
   { name = "scan", role = "input", doc = "A 3-D scan after the operation: FastSCAN text, PLY, STL or OBJ; without it nothing is compared" },
   { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
+  { name = "icp", default = true, doc = "After the landmarks, bring the scan closer by the surfaces that the operation does not change" },
   { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
@@ -38,16 +39,17 @@ local motion = solver[p.solver](scene, plan)
 local comparisons = {
   comparer.surface(motion.before, motion.after, { name = "ct_vs_simulated", unchanged = motion.before }),
 }
-local registration
+local registrations = {}
 if p.scan then
   local scanned = scan.file{ path = p.scan }
   local aligned
-  aligned, registration = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
-                                             scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })
+  aligned, registrations[1] = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
+                                                 scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })
+  if p.icp then aligned, registrations[2] = register.icp(aligned, motion.before, motion.after) end
   comparisons[2] = comparer.surface(aligned, motion.after, { name = "scan_vs_simulated", unchanged = motion.before })
 end
 report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion,
-              registration = registration, comparisons = comparisons, slices = p.slices, path = p.out }
+              registration = registrations, comparisons = comparisons, slices = p.slices, path = p.out }
 
 -- The table of the paper: signed distances in mm.
 print(string.format("Haller index before %.2f, correction index %.1f %%", anatomy.haller_index, anatomy.correction_index))
@@ -60,9 +62,11 @@ for _, c in ipairs(comparisons) do
     end
   end
 end
-if registration then
+for i, r in ipairs(registrations) do
+  print(string.format("registration %d: %s, residual %.2f mm RMS", i, r.method, r.rms))
+end
+if p.scan then
   local c = comparisons[2]
-  print(string.format("landmarks: %s, residual %.2f mm RMS", registration.method, registration.rms))
   if c.pit_points > 0 then
     print(string.format("scan against the unchanged CT, pit: RMS %.2f mm; skill of the prediction %.2f", c.unchanged_pit_rms, c.skill))
   end

@@ -4,16 +4,17 @@ local p = parameters{
   { name = "series", doc = "Which series of the folder, if there are several" },
   { name = "matrix", default = 256, range = { 64, 1024 }, doc = "Voxels a side of the phantom's slices" },
   { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
-  { name = "spacing", default = 8, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
+  { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "tolerance", default = 1e-5, range = { 1e-10, 0.5 }, doc = "Largest free force over the largest spring force at which each may stop" },
   { name = "only", doc = "Name of one solver to run beside the reference; default: all" },
 }
 
 local ct = p.ct and loader.dicom{ path = p.ct, series = p.series } or loader.phantom{ matrix = p.matrix }
-local cage = splines.cartilage(segmenter.thorax(ct))
+local cage = splines.cartilage(segmenter.thorax(ct), ct)
+local skin = { compression = 0.02 }   -- slack skin gives way, as in correction.lua
 local scene = model.two_layer(cage, {
   spacing = p.spacing,
-  effects = { effect.stretch{}, effect.shear{}, effect.bend{}, effect.direct{}, effect.cross{}, effect.attachment{} },
+  effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.direct{}, effect.cross{}, effect.attachment{} },
 })
 local plan = planner.nuss(cage, { lift = p.lift })
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kAnchorsPerPoint = 3;
 constexpr int kSamples = 96;
+constexpr double kTouching = 5;   // mm: a spring as short as this would swing over, so the point is glued to the body instead
 
 // A body as points that stand for it.
 struct BodyPoints {
@@ -80,6 +81,7 @@ std::vector<Anchor> findAnchors(const Scene& scene, double reach) {
       for (std::size_t i = 0; i < count; ++i) {
         Anchor anchor = refine(bodies[near[i].body], near[i].sample, p);
         anchor.point = point;
+        if (distance(anchor.rest, p) < kTouching) anchor.rest = p;
         found[point].push_back(anchor);
       }
     }

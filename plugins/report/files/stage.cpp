@@ -127,8 +127,10 @@ class Files final : public Stage {
     Json json;
     json["about"] = "Pectora: research software, not a medical device";
     json["coordinates"] = "DICOM patient coordinates (LPS), mm";
-    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion", "registration"})
+    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion"})
       if (inputs.has(port)) json[port] = factsJson(*inputs.handles(port).front().value);
+    for (const Handle& handle : inputs.handles("registration"))
+      json["registration"][dynamic_cast<const Registration&>(*handle.value).method] = factsJson(*handle.value);
     if (const auto scene = inputs.get<Scene>("scene")) {
       Json effects = Json::array();
       for (const auto& call : scene->effects) effects.push_back(call->id);
@@ -156,7 +158,7 @@ PECTORA_STAGE(Files, {.id = "report.files", .version = "1.0",
                       .summary = "Writes the summary, meshes, histograms and pictures of a run into a folder",
                       .inputs = {{"ct", {"Volume"}, true}, {"anatomy", {"Anatomy"}, true}, {"cage", {"RibCage"}, true},
                                  {"scene", {"Scene"}, true}, {"plan", {"Plan"}, true}, {"motion", {"Motion"}, true},
-                                 {"registration", {"Registration"}, true},
+                                 {.name = "registration", .kinds = {"Registration"}, .isList = true},
                                  {.name = "comparisons", .kinds = {"Comparison"}, .isList = true}},
                       .outputs = {{"report", {"Report"}}},
                       .isCacheable = false})

@@ -116,7 +116,12 @@ TEST(Anchors, AreTheNearestPointsOfThreeDifferentBodies) {
         // No sample of the same rib is nearer than the anchor.
         double best = INFINITY;
         for (const Vec3& p : scene.cage->ribs[three[k].index].curve.sample(2000)) best = std::min(best, distance(p, scene.inner[i]));
-        EXPECT_LE(distance(three[k].rest, scene.inner[i]), best + 1e-3);
+        if (best >= 5) {
+          // Samples 0.3 mm apart see a distance of 5 mm by 0.15^2 / 10 too large at most.
+          EXPECT_NEAR(distance(three[k].rest, scene.inner[i]), best, 0.003);
+        } else {
+          EXPECT_EQ(three[k].rest, scene.inner[i]) << "glued to what touches it";
+        }
       }
     }
     EXPECT_LE(distance(three[0].rest, scene.inner[i]), distance(three[2].rest, scene.inner[i]) + 1e-9);
