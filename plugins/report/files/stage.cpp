@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 namespace {
@@ -56,6 +57,9 @@ class Files final : public Stage {
     const auto anatomy = inputs.get<Anatomy>("anatomy");
     if (ct && anatomy && slices_ > 0) {
       makeFolder(path_ + "/slices");
+      // Pictures of an earlier run with other slices would pass for this one's.
+      for (const auto& entry : std::filesystem::directory_iterator(path_ + "/slices"))
+        if (entry.path().filename().string().starts_with("slice_") && entry.path().extension() == ".png") std::filesystem::remove(entry.path());
       const int total = ct->grid.size[2], count = std::min(slices_, total);
       for (int i = 0; i < count; ++i) {
         host.checkCancel();
