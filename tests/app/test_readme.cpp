@@ -29,7 +29,7 @@ TEST(Readme, PluginOfOnesOwnBuildsAgainstAnInstallationAndAppearsByName) {
   // Install, then build the plugin as its author would.
   const std::string prefix = (folder / "prefix").string(), build = (folder / "build").string(), log = " >" + (folder / "log.txt").string() + " 2>&1";
   ASSERT_EQ(exitCode("cmake --install " PECTORA_BUILD " --prefix " + prefix + log), 0) << readFile(folder / "log.txt");
-  ASSERT_EQ(exitCode("cmake -S " + (folder / "source").string() + " -B " + build + " -DCMAKE_CXX_FLAGS='" PECTORA_SANITIZE_FLAGS "' -DCMAKE_PREFIX_PATH=" + prefix + log), 0)
+  ASSERT_EQ(exitCode("cmake -G Ninja -S " + (folder / "source").string() + " -B " + build + " -DCMAKE_CXX_FLAGS='" PECTORA_SANITIZE_FLAGS "' -DCMAKE_PREFIX_PATH=" + prefix + log), 0)
       << readFile(folder / "log.txt");
   ASSERT_EQ(exitCode("cmake --build " + build + log), 0) << readFile(folder / "log.txt");
 
