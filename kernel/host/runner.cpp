@@ -163,7 +163,6 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
   const Descriptor& descriptor = *plugin.descriptor;
   try {
     // Settings first, so that a wrong one is told before any work.
-    Settings given = settings;
     bool accept = false;
     std::unique_ptr<Stage> stage;
     std::unique_ptr<Effect> effect;
@@ -182,7 +181,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
         v.flag(kAcceptUnconverged, accept, "");
       };
     }
-    applySettings(given, describe);
+    applySettings(settings, describe);
     checkInputs(plugin, inputs);
 
     // The record, but for what is known only afterwards.
@@ -198,7 +197,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
     if (effect) {
       auto call = std::make_shared<EffectCall>();
       call->id = id;
-      call->settings = given;
+      call->settings = settings;
       return {{call, record}};
     }
     const bool cacheable = descriptor.isCacheable;
@@ -271,12 +270,10 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
   }
   const auto session = solver.prepare(system, host);
   const Drive drive = makeDrive(*scene, *plan);
-  const auto begin = std::chrono::steady_clock::now();
   Solution solution = session->solve(drive, start.size() ? &start : nullptr, host);
 
   auto motion = std::make_shared<Motion>();
   motion->scene = scene;
-  motion->seconds = secondsSince(begin);
   for (std::size_t i = 0; i < layer; ++i) {
     motion->outer.push_back(solution.positions[i]);
     motion->inner.push_back(solution.positions[layer + i]);

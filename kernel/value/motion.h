@@ -28,7 +28,6 @@ struct Motion : Value {
   std::vector<double> energyHistory;        ///< N mm, at equal distances of iterations
   int invertedPrisms = 0;                   ///< cells between the layers that turned inside out
   int invertedAt = -1;                      ///< index of the first such point
-  double seconds = 0;                       ///< solving alone; not a part of what is compared
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;

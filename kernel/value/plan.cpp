@@ -81,11 +81,11 @@ std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion
   return moved;
 }
 
-RigidMotion Plan::partial(double t) const {
-  RigidMotion part = motion;
-  part.angle *= t;
-  part.translation *= t;
-  return part;
+RigidMotion RigidMotion::part(double t) const {
+  RigidMotion scaled = *this;
+  scaled.angle *= t;
+  scaled.translation *= t;
+  return scaled;
 }
 
 Vec3 Plan::moved(const Anchor& anchor, double t) const {
@@ -94,7 +94,7 @@ Vec3 Plan::moved(const Anchor& anchor, double t) const {
     case BodyKind::still:
       return anchor.rest;
     case BodyKind::sternum:
-      return partial(t)(anchor.rest);
+      return motion.part(t)(anchor.rest);
     case BodyKind::cartilage: {
       // Between two frames the curve is interpolated; the anchor keeps its offset from the curve.
       const double position = std::clamp(t, 0.0, 1.0) * double(frames.size() - 1);

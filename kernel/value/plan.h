@@ -13,6 +13,8 @@ struct RigidMotion {
   Vec3 translation;
 
   Vec3 operator()(Vec3 p) const { return pivot + rotate(p - pivot) + translation; }
+  /// Part t (0 to 1) of the motion: angle and translation are scaled.
+  RigidMotion part(double t) const;
   /// Rotates a direction (Rodrigues).
   Vec3 rotate(Vec3 d) const;
 };
@@ -51,8 +53,6 @@ struct Plan : Value {
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
-  /// Part t (0 to 1) of the sternum's motion: the angle and translation are scaled.
-  RigidMotion partial(double t) const;
   /// Where an anchor lies after part t of the motion.
   Vec3 moved(const Anchor& anchor, double t) const;
 };

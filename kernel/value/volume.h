@@ -38,7 +38,6 @@ struct Volume : Value {
   static constexpr const char* kName = "Volume";
   Grid grid;
   std::vector<std::int16_t> hu;  ///< Hounsfield units, grid.voxels() of them, axis 0 fastest
-  std::string modality = "CT";
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;

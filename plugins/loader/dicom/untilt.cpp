@@ -29,7 +29,6 @@ Volume untilt(const Volume& sheared, double driftX, double driftY) {
   const double drift[2] = {driftX, driftY};
   Volume straight;
   straight.grid = from;
-  straight.modality = sheared.modality;
   int start[2];
   for (int axis = 0; axis < 2; ++axis) {
     // Room for the slice that is farthest out, on the side on which it is.

@@ -37,12 +37,7 @@ RigidMotion liftRotation(const Sternum& sternum, Vec3 deepest, double lift, Pivo
 
 std::vector<std::vector<MovedCartilage>> motionFrames(const RibCage& cage, const RigidMotion& motion, int count) {
   std::vector<std::vector<MovedCartilage>> frames;
-  for (int f = 0; f < count; ++f) {
-    RigidMotion part = motion;
-    part.angle *= double(f) / (count - 1);
-    part.translation *= double(f) / (count - 1);
-    frames.push_back(followSternum(cage, part));
-  }
+  for (int f = 0; f < count; ++f) frames.push_back(followSternum(cage, motion.part(double(f) / (count - 1))));
   return frames;
 }
 

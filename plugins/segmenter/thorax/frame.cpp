@@ -20,7 +20,6 @@ std::shared_ptr<const Volume> upright(std::shared_ptr<const Volume> ct) {
   if (best == std::array<int, 3>{0, 1, 2} && !flipped[0] && !flipped[1] && !flipped[2]) return ct;
 
   auto result = std::make_shared<Volume>();
-  result->modality = ct->modality;
   Grid& to = result->grid;
   Vec3 corner{};
   for (int a = 0; a < 3; ++a) {

@@ -81,7 +81,7 @@ TEST(Plan, MovesAnchorsSmoothlyFromRestToTheEnd) {
   Plan plan;
   plan.cage = cage;
   plan.motion = forward(10);
-  for (int f = 0; f <= 10; ++f) plan.frames.push_back(followSternum(*cage, plan.partial(f / 10.0)));
+  for (int f = 0; f <= 10; ++f) plan.frames.push_back(followSternum(*cage, plan.motion.part(f / 10.0)));
   const Anchor onCartilage{0, BodyKind::cartilage, 0, 1.0, cage->cartilages[0].curve.at(1)};
   const Anchor onSternum{0, BodyKind::sternum, 0, 0, {1, -80, 3}};
   const Anchor onRib{0, BodyKind::rib, 0, 0.3, {90, 0, 0}};
