@@ -37,20 +37,18 @@ Compiled compile(const Scene& scene, Registry& registry) {
   Compiled compiled;
   compiled.system = std::make_unique<System>();
   System& system = *compiled.system;
-  const std::size_t layer = scene.points();
 
-  // Nodes: outer, inner, anchors.
+  // Nodes: layer by layer, then the anchors.
   system.rows = scene.rows;
   system.columns = scene.columns;
-  system.freeNodes = 2 * layer;
-  system.rest = NodeVectors(2 * layer + scene.anchors.size());
-  for (std::size_t i = 0; i < layer; ++i) {
-    system.rest.set(i, scene.outer[i]);
-    system.rest.set(layer + i, scene.inner[i]);
+  system.layers = scene.layers();
+  system.freeNodes = system.anchorNode(0);
+  system.rest = NodeVectors(system.anchorNode(scene.anchors.size()));
+  for (int l = 0; l < system.layers; ++l) {
+    for (std::size_t i = 0; i < system.points(); ++i) system.rest.set(system.node(l, i), scene.layer(l)[i]);
+    system.mass.insert(system.mass.end(), scene.layerMass(l).begin(), scene.layerMass(l).end());
   }
-  for (std::size_t j = 0; j < scene.anchors.size(); ++j) system.rest.set(2 * layer + j, scene.anchors[j].rest);
-  system.mass = scene.outerMass;
-  system.mass.insert(system.mass.end(), scene.innerMass.begin(), scene.innerMass.end());
+  for (std::size_t j = 0; j < scene.anchors.size(); ++j) system.rest.set(system.anchorNode(j), scene.anchors[j].rest);
   checkNodes(system);
 
   // Each effect that was called contributes; springs of one sort are collected for one term.

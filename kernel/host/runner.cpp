@@ -256,17 +256,19 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
 
   // Begin at rest, or where an earlier motion of the same scene ended.
   const System& system = *compiled.system;
-  const std::size_t layer = scene->points();
   NodeVectors start;
   if (!inputs[2].empty()) {
     const auto from = std::dynamic_pointer_cast<const Motion>(inputs[2].front().value);
-    if (from->outer.size() != layer || from->anchors.size() != scene->anchors.size())
-      throw Error("the motion to start from belongs to another scene").of("start")
-          .given(fmt::format("{} points, {} anchors", from->outer.size(), from->anchors.size()))
-          .allowed(fmt::format("{} points, {} anchors", layer, scene->anchors.size()));
-    start = system.rest;
-    for (std::size_t i = 0; i < layer; ++i) start.set(i, from->outer[i]), start.set(layer + i, from->inner[i]);
-    for (std::size_t j = 0; j < from->anchors.size(); ++j) start.set(2 * layer + j, from->anchors[j]);
+    const auto counts = [](std::size_t layers, std::size_t points, std::size_t anchors) {
+      return fmt::format("{} layers of {} points, {} anchors", layers, points, anchors);
+    };
+    const std::string given = counts(from->between.size() + 2, from->outer.size(), from->anchors.size());
+    const std::string allowed = counts(scene->between.size() + 2, system.points(), scene->anchors.size());
+    if (given != allowed) throw Error("the motion to start from belongs to another scene").of("start").given(given).allowed(allowed);
+    start = NodeVectors(system.rest.size());
+    for (int l = 0; l < system.layers; ++l)
+      for (std::size_t i = 0; i < system.points(); ++i) start.set(system.node(l, i), from->layer(l)[i]);
+    for (std::size_t j = 0; j < from->anchors.size(); ++j) start.set(system.anchorNode(j), from->anchors[j]);
   }
   const auto session = solver.prepare(system, host);
   const Drive drive = makeDrive(*scene, *plan);
@@ -274,10 +276,14 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
 
   auto motion = std::make_shared<Motion>();
   motion->scene = scene;
-  for (std::size_t i = 0; i < layer; ++i) {
-    motion->outer.push_back(solution.positions[i]);
-    motion->inner.push_back(solution.positions[layer + i]);
-  }
+  const auto layerOf = [&](int l) {
+    std::vector<Vec3> layer;
+    for (std::size_t i = 0; i < system.points(); ++i) layer.push_back(solution.positions[system.node(l, i)]);
+    return layer;
+  };
+  motion->outer = layerOf(0);
+  for (int l = 1; l + 1 < system.layers; ++l) motion->between.push_back(layerOf(l));
+  motion->inner = layerOf(system.layers - 1);
   motion->anchors = drive.frames.back();
   motion->status = solution.status;
   motion->message = std::move(solution.message);
@@ -287,7 +293,11 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver
   motion->relativeResidual = solution.relativeResidual;
   motion->energy = solution.energy;
   motion->energyHistory = std::move(solution.energyHistory);
-  motion->invertedPrisms = countInvertedPrisms(scene->rows, scene->columns, motion->outer, motion->inner, motion->invertedAt);
+  for (int l = 0; l + 1 < system.layers; ++l) {
+    int first = -1;
+    motion->invertedPrisms += countInvertedPrisms(scene->rows, scene->columns, motion->layer(l), motion->layer(l + 1), first);
+    if (motion->invertedAt < 0) motion->invertedAt = first;
+  }
 
   if (motion->invertedPrisms > 0)
     host.warn(fmt::format("{} cells between skin and pleura turned inside out, the first at row {}, column {}",

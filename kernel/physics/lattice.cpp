@@ -1,4 +1,4 @@
-// The springs that repeat over the grid of the two layers. Each is evaluated once, by the row in which it starts. Blocks of
+// The springs that repeat over the grid of skin and pleura. Each is evaluated once, by the row in which it starts. Blocks of
 // rows write into their neighbours' edges, so first every second block is done and then the others between them: no two at
 // work at one time touch the same row, and every sum has one order.
 #include "kernel/physics/hessian.h"
@@ -18,7 +18,7 @@ using namespace lattice;
 class Grid {
  public:
   Grid(const System& system, std::vector<StencilSpring> stencil)
-      : rows_(system.rows), columns_(system.columns), stencil_(std::move(stencil)) {
+      : rows_(system.rows), columns_(system.columns), layers_(system.layers), stencil_(std::move(stencil)) {
     for (const StencilSpring& s : stencil_) blockRows_ = std::max(blockRows_, 2 * std::abs(s.rows));
     blocks_ = (std::size_t(rows_) + blockRows_ - 1) / blockRows_;
   }
@@ -37,7 +37,7 @@ class Grid {
     const StencilSpring& s = stencil_[entry];
     const int other = row + s.rows, first = std::max(0, -s.columns), end = std::min(columns_, columns_ - s.columns);
     if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0, 0};
-    const auto node = [&](Layer layer, int r, int c) { return (std::size_t(layer) * rows_ + r) * columns_ + c; };
+    const auto node = [&](Layer layer, int r, int c) { return (std::size_t(layer == Layer::inner ? layers_ - 1 : 0) * rows_ + r) * columns_ + c; };
     return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first),
             (std::size_t(row) * stencil_.size() + entry) * columns_ + first, std::size_t(first)};
   }
@@ -63,7 +63,7 @@ class Grid {
   }
 
  private:
-  int rows_, columns_, blockRows_ = 8;
+  int rows_, columns_, layers_, blockRows_ = 8;
   std::size_t blocks_;
   std::vector<StencilSpring> stencil_;
 };

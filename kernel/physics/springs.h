@@ -1,10 +1,11 @@
-// Springs between nodes, and springs that repeat over the grid of the two layers. Energy of one: 1/2 k (l - l0)^2.
+// Springs between nodes, and springs that repeat over the grid of skin and pleura. Energy of one: 1/2 k (l - l0)^2.
 #pragma once
 
 #include "kernel/physics/system.h"
 
 namespace pectora {
 
+/// The skin and the pleura: the first and the last layer of a system.
 enum class Layer { outer, inner };
 
 /// A spring from every point (r, c) of layer `from` to (r + rows, c + columns) of layer `to`, where that exists.

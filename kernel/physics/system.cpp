@@ -36,11 +36,10 @@ std::vector<double> System::stiffnessBound() const {
 }
 
 std::string System::nodeName(std::size_t node) const {
-  const std::size_t layerPoints = std::size_t(rows) * columns;
-  if (node >= 2 * layerPoints) return "anchor " + std::to_string(node - 2 * layerPoints);
-  const std::size_t point = node % layerPoints;
-  return std::string(node < layerPoints ? "skin" : "pleura") + " point at row " + std::to_string(point / columns) +
-         ", column " + std::to_string(point % columns);
+  if (node >= anchorNode(0)) return "anchor " + std::to_string(node - anchorNode(0));
+  const std::size_t layer = node / points(), point = node % points();
+  const std::string name = layer == 0 ? "skin point" : int(layer) == layers - 1 ? "pleura point" : "point of layer " + std::to_string(layer);
+  return name + " at row " + std::to_string(point / columns) + ", column " + std::to_string(point % columns);
 }
 
 void Drive::apply(double t, std::size_t freeNodes, NodeVectors& positions) const {

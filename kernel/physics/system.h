@@ -10,7 +10,7 @@
 
 namespace pectora {
 
-/// One vector a node, as structure of arrays. Nodes are numbered: outer layer, inner layer, anchors.
+/// One vector a node, as structure of arrays. Nodes are numbered layer by layer from skin to pleura, then the anchors.
 struct NodeVectors {
   std::vector<double> x, y, z;
 
@@ -59,16 +59,22 @@ class Term {
 /// Nodes [0, freeNodes) are unknown, the rest follow the plan.
 struct System {
   int rows = 0, columns = 0;               ///< of each layer
+  int layers = 2;                          ///< skin, those between, pleura
   std::size_t freeNodes = 0;
   NodeVectors rest;                        ///< all nodes, mm
   std::vector<double> mass;                ///< of the free nodes, kg
   std::vector<std::unique_ptr<Term>> terms;
 
+  /// Points of one layer; point (r, c) is r * columns + c.
+  std::size_t points() const { return std::size_t(rows) * columns; }
+  /// The node of a point of layer l, 0 the skin; and of an anchor.
+  std::size_t node(int l, std::size_t point) const { return std::size_t(l) * points() + point; }
+  std::size_t anchorNode(std::size_t anchor) const { return node(layers, anchor); }
   /// Energy of all terms; overwrites `gradient`.
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const;
   double energy(const NodeVectors& positions) const;
   std::vector<double> stiffnessBound() const;
-  /// "outer point at row 3, column 17", for messages.
+  /// "skin point at row 3, column 17", for messages.
   std::string nodeName(std::size_t node) const;
 };
 

@@ -20,8 +20,7 @@ class Effect {
  public:
   virtual ~Effect() = default;
   virtual void describe(Visitor& visitor) = 0;
-  /// `system` has its nodes and masses, but no terms yet. Node numbers: outer point i is i, inner point i is
-  /// scene.points() + i, anchor j is 2 * scene.points() + j.
+  /// `system` has its nodes and masses, but no terms yet; System::node and anchorNode number the scene's points and anchors.
   virtual Contribution contribute(const Scene& scene, const System& system) = 0;
 };
 

@@ -17,6 +17,7 @@ struct Motion : Value {
   static constexpr const char* kName = "Motion";
   std::shared_ptr<const Scene> scene;
   std::vector<Vec3> outer, inner;           ///< positions after, as in Scene
+  std::vector<std::vector<Vec3>> between;   ///< the same of the layers between
   std::vector<Vec3> anchors;                ///< where the plan brought the scene's anchors
   SolveStatus status = SolveStatus::stalled;
   std::string message;                      ///< what is wrong, and where, if not converged
@@ -26,16 +27,18 @@ struct Motion : Value {
   double relativeResidual = 0;              ///< the same over the largest spring force
   double energy = 0;                        ///< N mm
   std::vector<double> energyHistory;        ///< N mm, at equal distances of iterations
-  int invertedPrisms = 0;                   ///< cells between the layers that turned inside out
-  int invertedAt = -1;                      ///< index of the first such point
+  int invertedPrisms = 0;                   ///< cells between two layers that turned inside out
+  int invertedAt = -1;                      ///< index of the first such point in its layer
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
+  /// As Scene::layer.
+  const std::vector<Vec3>& layer(int l) const { return l == 0 ? outer : l == int(between.size()) + 1 ? inner : between[l - 1]; }
   /// `before` and `after`: the skin as meshes; `after` has the field "displacement".
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };
 
-/// Counts the prisms between the layers whose signed volume is not positive; `first` gets the index of the first.
+/// Counts the prisms between two layers whose signed volume is not positive; `first` gets the index of the first.
 int countInvertedPrisms(int rows, int columns, const std::vector<Vec3>& outer, const std::vector<Vec3>& inner,
                         int& first);
 

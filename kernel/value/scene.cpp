@@ -24,6 +24,7 @@ Mesh layerMesh(int rows, int columns, std::vector<Vec3> points) {
 std::vector<Fact> Scene::facts() const {
   return {{"rows", double(rows), ""},
           {"columns", double(columns), ""},
+          {"layers", double(layers()), ""},
           {"skin_points", double(points()), ""},
           {"row_spacing", rowSpacing, "mm"},
           {"column_spacing", columnSpacing, "mm"},

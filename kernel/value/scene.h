@@ -1,9 +1,11 @@
-// The two-layer model of the chest wall at rest, with the effects that it calls for.
+// The chest wall at rest as layers of points, with the effects that it calls for.
 #pragma once
 
 #include "kernel/value/mesh.h"
 #include "kernel/value/rib_cage.h"
 #include "kernel/value/settings.h"
+
+#include <cstdint>
 
 namespace pectora {
 
@@ -33,14 +35,27 @@ struct Anchor {
   bool isOnSkin = false;               ///< holds the skin at the model's edge, where skin beyond the model goes on
 };
 
-/// Two layers of rows × columns points: `outer` on the skin, `inner` on the pleura. Row 0 is the lowest level,
-/// column 0 the patient's right. Point (r, c) has index r * columns + c in both layers.
+/// What a cell between two layers is made of.
+struct Tissue {
+  std::string name;                    ///< "fat"
+  double youngsModulus = 0;            ///< kPa
+  double poissonsRatio = 0;
+  double density = 0;                  ///< kg/m^3
+};
+
+/// Layers of rows × columns points: `outer` on the skin, `inner` on the pleura, and those `between` them, from skin to
+/// pleura; a lattice has none between. Row 0 is the lowest level, column 0 the patient's right. Point (r, c) has index
+/// r * columns + c in every layer.
 struct Scene : Value {
   static constexpr const char* kName = "Scene";
   std::shared_ptr<const RibCage> cage;
   int rows = 0, columns = 0;
   std::vector<Vec3> outer, inner;         ///< rest positions, mm
+  std::vector<std::vector<Vec3>> between; ///< rest positions of the layers between, mm
   std::vector<double> outerMass, innerMass;  ///< kg
+  std::vector<std::vector<double>> betweenMass;  ///< kg, as `between`
+  std::vector<Tissue> tissues;            ///< of a solid wall; a lattice has none
+  std::vector<std::uint8_t> cellTissue;   ///< index into `tissues` of every cell, see `cell`; empty for a lattice
   double rowSpacing = 0, columnSpacing = 0;  ///< mean distance between neighbours on the skin, mm
   double thickness = 0;                      ///< mean distance from skin to pleura over the middle third of the columns, mm
   std::vector<Anchor> anchors;
@@ -50,7 +65,15 @@ struct Scene : Value {
   std::vector<Fact> facts() const override;
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
   int index(int row, int column) const { return row * columns + column; }
+  /// Of one layer.
   int points() const { return rows * columns; }
+  /// The cell between layers l and l + 1 whose first corner is point (r, c): the others lie at r + 1 and c + 1.
+  int cell(int l, int r, int c) const { return (l * (rows - 1) + r) * (columns - 1) + c; }
+  int cells() const { return (layers() - 1) * (rows - 1) * (columns - 1); }
+  int layers() const { return 2 + int(between.size()); }
+  /// Layer 0 is `outer`, the last `inner`.
+  const std::vector<Vec3>& layer(int l) const { return l == 0 ? outer : l + 1 == layers() ? inner : between[l - 1]; }
+  const std::vector<double>& layerMass(int l) const { return l == 0 ? outerMass : l + 1 == layers() ? innerMass : betweenMass[l - 1]; }
 };
 
 /// The triangle mesh of one layer; normals point out of the body.

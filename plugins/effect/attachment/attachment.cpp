@@ -17,7 +17,7 @@ class Attachment final : public Effect {
     v.real("stiffness", stiffness_, "N/mm", {0, 1e12}, {0, 10}, "Spring constant given by hand; 0: from Young's modulus");
   }
 
-  Contribution contribute(const Scene& scene, const System&) override {
+  Contribution contribute(const Scene& scene, const System& system) override {
     Contribution part;
     if (scene.anchors.empty()) {
       part.emptyBecause = "no rib, cartilage or sternum was found to hold the pleura";
@@ -27,12 +27,11 @@ class Attachment final : public Effect {
     // wall, and the skin beyond the model's edge, give way like a strut as long as the wall is thick.
     const double area = scene.rowSpacing * scene.columnSpacing;
     double least = INFINITY, greatest = 0;
-    const std::size_t layer = scene.points();
     for (std::size_t j = 0; j < scene.anchors.size(); ++j) {
       const Anchor& anchor = scene.anchors[j];
       const double length = anchor.body == BodyKind::still ? scene.thickness : std::max(1.0, distance(anchor.rest, scene.inner[anchor.point]));
       const double k = stiffness_ > 0 ? stiffness_ : youngsModulus_ * 1e-3 * area / length;
-      part.springs.push_back({anchor.isOnSkin ? anchor.point : layer + anchor.point, 2 * layer + j, k});
+      part.springs.push_back({system.node(anchor.isOnSkin ? 0 : system.layers - 1, anchor.point), system.anchorNode(j), k});
       least = std::min(least, k);
       greatest = std::max(greatest, k);
     }

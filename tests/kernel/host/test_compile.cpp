@@ -67,6 +67,25 @@ TEST(Compile, NamesThePointsThatNothingHolds) {
   EXPECT_TRUE(contains(text, "skin point at row 0, column 0")) << text;
 }
 
+TEST(Compile, NumbersTheLayersFromSkinToPleura) {
+  Registry registry({PECTORA_PLUGINS});
+  Scene scene = flatScene();
+  scene.between = {scene.outer, scene.outer};
+  for (Vec3& p : scene.between[0]) p.y = -15;
+  for (Vec3& p : scene.between[1]) p.y = -5;
+  scene.betweenMass.assign(2, std::vector<double>(42, 2e-3));
+  scene.effects = {call("effect.direct"), call("effect.attachment")};
+  // Springs join skin and pleura, so nothing holds the layers between.
+  const std::string text = errorOf([&] { compile(scene, registry); }).what();
+  EXPECT_TRUE(contains(text, "84 of 168")) << text;
+  EXPECT_TRUE(contains(text, "point of layer 1 at row 0, column 0")) << text;
+  scene.betweenMass[1][8] = NAN;
+  EXPECT_TRUE(contains(errorOf([&] { compile(scene, registry); }).what(), "point of layer 2 at row 1, column 1"));
+  scene.betweenMass[1][8] = 2e-3;
+  scene.anchors[5].rest.x = NAN;
+  EXPECT_TRUE(contains(errorOf([&] { compile(scene, registry); }).what(), "anchor 5"));
+}
+
 TEST(Compile, RefusesZeroMassAndPositionsThatAreNotFinite) {
   Registry registry({PECTORA_PLUGINS});
   Scene scene = flatScene();

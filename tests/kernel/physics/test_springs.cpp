@@ -114,6 +114,17 @@ TEST(LatticeTerm, EqualsTheSameSpringsGivenOneByOne) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(boundA[i], boundB[i], 1e-12);
 }
 
+TEST(LatticeTerm, JoinsSkinAndPleuraAcrossTheLayersBetween) {
+  System system = crookedGrid(4, 5, 0);
+  system.layers = 3;
+  system.rest = perturbed(crookedGrid(4, 5, 20), 1, 8);
+  const auto term = makeLatticeTerm("direct", system, {{Layer::outer, Layer::inner, 1, -1, 0.3}});
+  term->forEachSpring([&](const Spring& s) {
+    EXPECT_EQ(s.b, s.a + 2 * 20 + 5 - 1);
+    EXPECT_EQ(s.restLength, distance(system.rest[s.a], system.rest[s.b]));
+  });
+}
+
 TEST(LatticeTerm, IsUnchangedByRotationAndTranslation) {
   const System system = crookedGrid(6, 9, 0);
   const auto term = makeLatticeTerm("all", system, someStencil());
