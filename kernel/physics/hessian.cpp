@@ -12,8 +12,14 @@ class SystemHessian final : public Hessian {
   void multiply(const NodeVectors& v, NodeVectors& y) const override {
     for (const auto& part : parts_) part->multiply(v, y);
   }
+  void multiplySingle(const SingleVectors& v, SingleVectors& y) const override {
+    for (const auto& part : parts_) part->multiplySingle(v, y);
+  }
   void addDiagonal(std::vector<Symmetric3>& blocks) const override {
     for (const auto& part : parts_) part->addDiagonal(blocks);
+  }
+  void forEachCoupling(const Coupling& visit) const override {
+    for (const auto& part : parts_) part->forEachCoupling(visit);
   }
 
  private:

@@ -20,17 +20,29 @@ struct Symmetric3 {
 /// the diagonal is raised until all pivots exceed 1e-9 of the trace. Of a matrix without positive trace: the identity.
 Symmetric3 inverse(Symmetric3 a);
 
+/// A 3 x 3 matrix, by rows.
+struct Matrix3 {
+  double m[3][3] = {};
+};
+
 /// A term's second derivative at one place. Each call of linearise moves it to another.
 class Hessian {
  public:
   virtual ~Hessian() = default;
-  /// Takes the derivative at `positions`; `projected`: its nearest positive semi-definite form, element by element.
+  /// Takes the derivative at `positions` (all nodes); `projected`: its nearest positive semi-definite form, element by element.
   /// An element that has no direction of its own (a spring of no length) is always projected.
   virtual void linearise(const NodeVectors& positions, bool projected) = 0;
-  /// y += H v, over all nodes. The result does not depend on the number of threads.
+  /// y += H v, with v over all nodes; y of driven nodes means nothing. The result does not depend on the number of threads.
   virtual void multiply(const NodeVectors& v, NodeVectors& y) const = 0;
+  /// y += H v in single precision. `v` and `y` end with the grid of layers; anchors, which lie beyond, stand still.
+  virtual void multiplySingle(const SingleVectors& v, SingleVectors& y) const = 0;
   /// Adds the blocks on the diagonal, one a node, N/mm.
   virtual void addDiagonal(std::vector<Symmetric3>& blocks) const = 0;
+  /// Calls visit(a, b, block) for the blocks beside the diagonal, N/mm: the one that joins the forces on node a with the
+  /// movement of node b. Of (a, b) and (b, a), which are each other's transpose, only one is shown; a pair may be shown in
+  /// several parts. The order is always the same.
+  using Coupling = std::function<void(std::size_t a, std::size_t b, const Matrix3& block)>;
+  virtual void forEachCoupling(const Coupling& visit) const = 0;
 };
 
 /// The Hessian of all terms of a system; null if a term has none.

@@ -25,21 +25,20 @@ class Grid {
 
   const std::vector<StencilSpring>& stencil() const { return stencil_; }
   std::size_t columns() const { return std::size_t(columns_); }
+  /// Nodes of all layers.
+  std::size_t nodes() const { return std::size_t(layers_) * rows_ * columns_; }
   std::size_t blocks() const { return blocks_; }
-  /// Entries of an array with one place a spring; those of springs that reach over the edge are not used.
-  std::size_t slots() const { return std::size_t(rows_) * stencil_.size() * columns(); }
 
   /// The springs of stencil entry `entry` that start in `row`.
   struct Run {
-    std::size_t near, far, count, slot, column;   // first nodes, how many, place in arrays of slots, first column
+    std::size_t near, far, count, column;   // first nodes, how many, first column
   };
   Run run(int row, std::size_t entry) const {
     const StencilSpring& s = stencil_[entry];
     const int other = row + s.rows, first = std::max(0, -s.columns), end = std::min(columns_, columns_ - s.columns);
-    if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0, 0};
+    if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0};
     const auto node = [&](Layer layer, int r, int c) { return (std::size_t(layer == Layer::inner ? layers_ - 1 : 0) * rows_ + r) * columns_ + c; };
-    return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first),
-            (std::size_t(row) * stencil_.size() + entry) * columns_ + first, std::size_t(first)};
+    return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first), std::size_t(first)};
   }
 
   /// Calls f(block, first row, end row) for every block, at most one of two neighbours at a time.
@@ -68,12 +67,22 @@ class Grid {
   std::vector<StencilSpring> stencil_;
 };
 
-ConstRow rowOf(const NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
-Row rowOf(NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
+ConstRow<double> rowOf(const NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
+Row<double> rowOf(NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
+
+ConstRow<float> rowOf(const SingleVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
+Row<float> rowOf(SingleVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
+
+// The nodes of the grid, counted from `origin`, which keeps them small.
+void take(const NodeVectors& from, Vec3 origin, SingleVectors& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to.x[i] = float(from.x[i] - origin.x);
+  for (std::size_t i = 0; i < to.size(); ++i) to.y[i] = float(from.y[i] - origin.y);
+  for (std::size_t i = 0; i < to.size(); ++i) to.z[i] = float(from.z[i] - origin.z);
+}
 
 // What a spring of no length does: it pushes along the direction that it had at rest.
 struct Degenerate {
-  std::size_t near, far, slot;
+  std::size_t near, far;
   Vec3 direction;
   double stiffness, restLength, length;
 };
@@ -85,30 +94,38 @@ class LatticeHessian final : public Hessian {
   explicit LatticeHessian(const LatticeTerm& term);
   void linearise(const NodeVectors& positions, bool projected) override;
   void multiply(const NodeVectors& v, NodeVectors& y) const override;
+  void multiplySingle(const SingleVectors& v, SingleVectors& y) const override;
   void addDiagonal(std::vector<Symmetric3>& blocks) const override;
+  void forEachCoupling(const Coupling& visit) const override;
 
  private:
-  // The four rows of numbers of a run lie beside each other.
-  RowCurvature curvature(std::size_t slot) const;
+  RowSprings<float> springs(const Grid::Run& run, std::size_t entry) const;
+  // Calls f(i, block) for the springs i of a run, with the second derivative of each.
+  template <class F>
+  void forEachBlock(const Grid::Run& run, std::size_t entry, std::vector<float>& work, F&& f) const;
+  // The second derivative of a spring that has no direction of its own.
+  Symmetric3 degenerateBlock(const Grid::Run& run, std::size_t entry, std::size_t i) const;
+  bool isDegenerate(const Grid::Run& run, std::size_t i) const;
+
   const LatticeTerm& term_;
-  std::unique_ptr<float[]> values_;
+  SingleVectors rest_, moved_;
+  bool projected_ = true;
 };
 
 class LatticeTerm final : public Term {
  public:
   LatticeTerm(std::string name, const System& system, std::vector<StencilSpring> stencil)
-      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(system.rest), restLength_(grid_.slots()) {
-    grid_.forEachRun([&](const Grid::Run& r, std::size_t) {
-      for (std::size_t i = 0; i < r.count; ++i) restLength_[r.slot + i] = distance(rest_[r.near + i], rest_[r.far + i]);
-    });
-  }
+      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(system.rest) {}
 
   std::string name() const override { return name_; }
   const Grid& grid() const { return grid_; }
-  RowSprings springs(const NodeVectors& positions, const Grid::Run& r, std::size_t entry) const {
+  const NodeVectors& rest() const { return rest_; }
+  RowSprings<double> springs(const NodeVectors& positions, const Grid::Run& r, std::size_t entry) const {
     const StencilSpring& s = grid_.stencil()[entry];
-    return {r.count, rowOf(positions, r.near), rowOf(positions, r.far), &restLength_[r.slot], s.stiffnessNPerMm, s.compression};
+    return {r.count, rowOf(positions, r.near), rowOf(positions, r.far), rowOf(rest_, r.near), rowOf(rest_, r.far),
+            s.stiffnessNPerMm, s.compression};
   }
+  double restLength(const Grid::Run& r, std::size_t i) const { return distance(rest_[r.near + i], rest_[r.far + i]); }
 
   double energy(const NodeVectors& positions) const override {
     std::vector<double> energies(grid_.blocks());
@@ -129,11 +146,11 @@ class LatticeTerm final : public Term {
     std::vector<double> energies(grid_.blocks()), largest(grid_.blocks());
     grid_.forEachBlock([&](std::size_t block, int begin, int end) {
       std::vector<double> work(6 * columns);
-      const Row pull{&work[0], &work[columns], &work[2 * columns]};
+      const Row<double> pull{&work[0], &work[columns], &work[2 * columns]};
       double *twice = &work[3 * columns], *greatest = &work[4 * columns], *degenerate = &work[5 * columns];
       grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
         springForces(springs(positions, r, entry), pull, {twice + r.column, greatest + r.column, degenerate + r.column});
-        const ConstRow pulled{pull.x, pull.y, pull.z};
+        const ConstRow<double> pulled{pull.x, pull.y, pull.z};
         addRow(r.count, pulled, -1, rowOf(gradient, r.near));
         addRow(r.count, pulled, 1, rowOf(gradient, r.far));
       });
@@ -172,7 +189,7 @@ class LatticeTerm final : public Term {
     grid_.forEachRun([&](const Grid::Run& r, std::size_t entry) {
       const StencilSpring& s = grid_.stencil()[entry];
       for (std::size_t i = 0; i < r.count; ++i)
-        visit({r.near + i, r.far + i, s.stiffnessNPerMm, restLength_[r.slot + i], s.compression});
+        visit({r.near + i, r.far + i, s.stiffnessNPerMm, restLength(r, i), s.compression});
     });
   }
 
@@ -182,10 +199,10 @@ class LatticeTerm final : public Term {
     grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
       const StencilSpring& s = grid_.stencil()[entry];
       for (std::size_t i = 0; i < r.count; ++i) {
-        const double length = distance(positions[r.near + i], positions[r.far + i]), restLength = restLength_[r.slot + i];
-        if (length > kDegenerate * restLength) continue;
-        const double stiffness = s.stiffnessNPerMm * (length < restLength ? s.compression : 1);
-        f({r.near + i, r.far + i, r.slot + i, normalized(rest_[r.far + i] - rest_[r.near + i]), stiffness, restLength, length});
+        const double length = distance(positions[r.near + i], positions[r.far + i]), rest = restLength(r, i);
+        if (length > kDegenerate * rest) continue;
+        const double stiffness = s.stiffnessNPerMm * (length < rest ? s.compression : 1);
+        f({r.near + i, r.far + i, normalized(rest_[r.far + i] - rest_[r.near + i]), stiffness, rest, length});
       }
     });
   }
@@ -194,61 +211,108 @@ class LatticeTerm final : public Term {
   std::string name_;
   Grid grid_;
   NodeVectors rest_;
-  std::vector<double> restLength_;
 };
 
 LatticeHessian::LatticeHessian(const LatticeTerm& term)
-    : term_(term), values_(std::make_unique_for_overwrite<float[]>(4 * term.grid().slots())) {}
-
-RowCurvature LatticeHessian::curvature(std::size_t slot) const {
-  const std::size_t columns = term_.grid().columns(), column = slot % columns;
-  float* first = &values_[4 * (slot - column) + column];
-  return {first, first + columns, first + 2 * columns, first + 3 * columns};
+    : term_(term), rest_(term.grid().nodes()), moved_(term.grid().nodes()) {
+  take(term.rest(), term.rest()[0], rest_);
 }
 
 void LatticeHessian::linearise(const NodeVectors& positions, bool projected) {
-  const Grid& grid = term_.grid();
-  grid.forEachBlock([&](std::size_t, int begin, int end) {
-    std::vector<double> degenerate(grid.columns());
-    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
-      springCurvatures(term_.springs(positions, r, entry), projected, curvature(r.slot), &degenerate[r.column]);
-    });
-    if (std::none_of(degenerate.begin(), degenerate.end(), [](double d) { return d > 0; })) return;
-    term_.forEachDegenerate(positions, begin, end, [&](const Degenerate& d) {
-      const RowCurvature c = curvature(d.slot);
-      const Vec3 m = d.direction * std::sqrt(d.stiffness);
-      *c.mx = float(m.x), *c.my = float(m.y), *c.mz = float(m.z);
-      *c.a = d.restLength > 0 ? 0 : float(d.stiffness);   // a spring that has no length at rest is as stiff in any direction
-    });
-  });
+  const NodeVectors& rest = term_.rest();
+  for (std::size_t i = 0; i < moved_.size(); ++i) moved_.set(i, positions[i] - rest[i]);
+  projected_ = projected;
+}
+
+RowSprings<float> LatticeHessian::springs(const Grid::Run& r, std::size_t entry) const {
+  const StencilSpring& s = term_.grid().stencil()[entry];
+  return {r.count, rowOf(moved_, r.near), rowOf(moved_, r.far), rowOf(rest_, r.near), rowOf(rest_, r.far), float(s.stiffnessNPerMm), float(s.compression)};
+}
+
+bool LatticeHessian::isDegenerate(const Grid::Run& r, std::size_t i) const {
+  // In the same steps as the rows do it.
+  const float x0 = rest_.x[r.far + i] - rest_.x[r.near + i], y0 = rest_.y[r.far + i] - rest_.y[r.near + i], z0 = rest_.z[r.far + i] - rest_.z[r.near + i];
+  const float x = x0 + (moved_.x[r.far + i] - moved_.x[r.near + i]), y = y0 + (moved_.y[r.far + i] - moved_.y[r.near + i]),
+              z = z0 + (moved_.z[r.far + i] - moved_.z[r.near + i]);
+  return x * x + y * y + z * z <= kDegenerateSingle * kDegenerateSingle * (x0 * x0 + y0 * y0 + z0 * z0);
+}
+
+// It counts as projected: k along the direction at rest, or, if it has no length at rest, in any direction.
+Symmetric3 LatticeHessian::degenerateBlock(const Grid::Run& r, std::size_t entry, std::size_t i) const {
+  const StencilSpring& s = term_.grid().stencil()[entry];
+  const Vec3 d = term_.rest()[r.far + i] - term_.rest()[r.near + i], n = normalized(d);
+  Symmetric3 block;
+  if (norm(d) > 0) {
+    const double k = s.stiffnessNPerMm * s.compression;
+    block = {k * n.x * n.x, k * n.x * n.y, k * n.x * n.z, k * n.y * n.y, k * n.y * n.z, k * n.z * n.z};
+  } else {
+    block.addIdentity(s.stiffnessNPerMm);
+  }
+  return block;
 }
 
 void LatticeHessian::multiply(const NodeVectors& v, NodeVectors& y) const {
+  SingleVectors in(term_.grid().nodes()), out(in);
+  take(v, {}, in);
+  multiplySingle(in, out);
+  for (std::size_t i = 0; i < out.size(); ++i) y.x[i] += double(out.x[i]);
+  for (std::size_t i = 0; i < out.size(); ++i) y.y[i] += double(out.y[i]);
+  for (std::size_t i = 0; i < out.size(); ++i) y.z[i] += double(out.z[i]);
+}
+
+void LatticeHessian::multiplySingle(const SingleVectors& v, SingleVectors& y) const {
   const Grid& grid = term_.grid();
   const std::size_t columns = grid.columns();
   grid.forEachBlock([&](std::size_t, int begin, int end) {
-    std::vector<double> work(3 * columns);
-    const Row pull{&work[0], &work[columns], &work[2 * columns]};
-    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t) {
-      curvatureProducts(r.count, rowOf(v, r.near), rowOf(v, r.far), curvature(r.slot), pull);
-      const ConstRow pulled{pull.x, pull.y, pull.z};
+    std::vector<float> work(3 * columns);
+    const Row<float> pull{&work[0], &work[columns], &work[2 * columns]};
+    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
+      if (curvatureProducts(springs(r, entry), projected_, rowOf(v, r.near), rowOf(v, r.far), pull))
+        for (std::size_t i = 0; i < r.count; ++i)
+          if (isDegenerate(r, i)) {
+            const Vec3 p = degenerateBlock(r, entry, i) * (v[r.far + i] - v[r.near + i]);
+            pull.x[i] = float(p.x), pull.y[i] = float(p.y), pull.z[i] = float(p.z);
+          }
+      const ConstRow<float> pulled{pull.x, pull.y, pull.z};
       addRow(r.count, pulled, -1, rowOf(y, r.near));
       addRow(r.count, pulled, 1, rowOf(y, r.far));
     });
   });
 }
 
+template <class F>
+void LatticeHessian::forEachBlock(const Grid::Run& r, std::size_t entry, std::vector<float>& work, F&& f) const {
+  const std::size_t columns = term_.grid().columns();
+  work.resize(2 * columns);
+  float *as = &work[0], *bs = &work[columns];
+  const bool anyDegenerate = springCurvatures(springs(r, entry), projected_, {as, bs});
+  for (std::size_t i = 0; i < r.count; ++i) {
+    const Vec3 d = rest_[r.far + i] - rest_[r.near + i] + (moved_[r.far + i] - moved_[r.near + i]);
+    const double a = double(as[i]), b = double(bs[i]);
+    Symmetric3 block{a + b * d.x * d.x, b * d.x * d.y, b * d.x * d.z, a + b * d.y * d.y, b * d.y * d.z, a + b * d.z * d.z};
+    if (anyDegenerate && isDegenerate(r, i)) block = degenerateBlock(r, entry, i);
+    f(i, block);
+  }
+}
+
 void LatticeHessian::addDiagonal(std::vector<Symmetric3>& blocks) const {
   const Grid& grid = term_.grid();
   grid.forEachBlock([&](std::size_t, int begin, int end) {
-    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t) {
-      const RowCurvature c = curvature(r.slot);
-      for (std::size_t i = 0; i < r.count; ++i) {
-        const double x = double(c.mx[i]), y = double(c.my[i]), z = double(c.mz[i]), a = double(c.a[i]);
-        const Symmetric3 block{a + x * x, x * y, x * z, a + y * y, y * z, a + z * z};
+    std::vector<float> work;
+    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
+      forEachBlock(r, entry, work, [&](std::size_t i, const Symmetric3& block) {
         blocks[r.near + i] += block;
         blocks[r.far + i] += block;
-      }
+      });
+    });
+  });
+}
+
+void LatticeHessian::forEachCoupling(const Coupling& visit) const {
+  std::vector<float> work;
+  term_.grid().forEachRun([&](const Grid::Run& r, std::size_t entry) {
+    forEachBlock(r, entry, work, [&](std::size_t i, const Symmetric3& h) {
+      visit(r.near + i, r.far + i, {{{-h.xx, -h.xy, -h.xz}, {-h.xy, -h.yy, -h.yz}, {-h.xz, -h.yz, -h.zz}}});
     });
   });
 }

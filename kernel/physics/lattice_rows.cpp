@@ -11,18 +11,20 @@
 
 namespace pectora::lattice {
 
-PECTORA_WIDE void springForces(const RowSprings& springs, Row pull, RowSums sums) {
+PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> pull, RowSums sums) {
   const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const double *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
-  const double* rest = springs.restLength;
+  const double *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
+  const double *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
   double *px = pull.x, *py = pull.y, *pz = pull.z;
   double *energy = sums.twiceEnergy, *largest = sums.largest, *degenerate = sums.degenerate;
   const double stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
   const std::size_t count = springs.count;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const double dx = fx[i] - nx[i], dy = fy[i] - ny[i], dz = fz[i] - nz[i], l0 = rest[i];
-    const double l = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double dx = fx[i] - nx[i], dy = fy[i] - ny[i], dz = fz[i] - nz[i];
+    const double dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
+    const double l = std::sqrt(dx * dx + dy * dy + dz * dz), l0 = std::sqrt(dx0 * dx0 + dy0 * dy0 + dz0 * dz0);
     const double longer = l - l0;
     const double tension = (longer < 0 ? compressed : stretched) * longer;
     const bool isDegenerate = l <= kDegenerate * l0;
@@ -35,64 +37,97 @@ PECTORA_WIDE void springForces(const RowSprings& springs, Row pull, RowSums sums
   }
 }
 
-PECTORA_WIDE void springEnergies(const RowSprings& springs, double* twiceEnergy) {
+PECTORA_WIDE void springEnergies(const RowSprings<double>& springs, double* twiceEnergy) {
   const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const double *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
-  const double* rest = springs.restLength;
+  const double *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
+  const double *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
   double* energy = twiceEnergy;
   const double stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
   const std::size_t count = springs.count;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
     const double dx = fx[i] - nx[i], dy = fy[i] - ny[i], dz = fz[i] - nz[i];
-    const double longer = std::sqrt(dx * dx + dy * dy + dz * dz) - rest[i];
+    const double dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
+    const double longer = std::sqrt(dx * dx + dy * dy + dz * dz) - std::sqrt(dx0 * dx0 + dy0 * dy0 + dz0 * dz0);
     const double tension = (longer < 0 ? compressed : stretched) * longer;
     energy[i] += tension * longer;
   }
 }
 
-PECTORA_WIDE void addRow(std::size_t count, ConstRow source, double sign, Row target) {
+PECTORA_WIDE void addRow(std::size_t count, ConstRow<double> source, double sign, Row<double> target) {
   const double *sx = source.x, *sy = source.y, *sz = source.z;
   double *tx = target.x, *ty = target.y, *tz = target.z;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) tx[i] += sign * sx[i], ty[i] += sign * sy[i], tz[i] += sign * sz[i];
 }
 
-PECTORA_WIDE void springCurvatures(const RowSprings& springs, bool projected, RowCurvature curvature, double* degenerate) {
-  const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
-  const double *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
-  const double* rest = springs.restLength;
-  float *mx = curvature.mx, *my = curvature.my, *mz = curvature.mz, *as = curvature.a;
-  const double stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
-  const double floor = projected ? 0 : -INFINITY;
-  const std::size_t count = springs.count;
+PECTORA_WIDE void addRow(std::size_t count, ConstRow<float> source, float sign, Row<float> target) {
+  const float *sx = source.x, *sy = source.y, *sz = source.z;
+  float *tx = target.x, *ty = target.y, *tz = target.z;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const double dx = fx[i] - nx[i], dy = fy[i] - ny[i], dz = fz[i] - nz[i], l0 = rest[i];
-    const double l = std::sqrt(dx * dx + dy * dy + dz * dz);
-    const bool isDegenerate = l <= kDegenerate * l0;
-    const double k = isDegenerate ? 0.0 : l < l0 ? compressed : stretched;
-    const double safe = isDegenerate ? 1.0 : l;
-    const double across = k * (1 - l0 / safe);
-    const double a = isDegenerate ? 0.0 : across < floor ? floor : across;
-    const double m = std::sqrt(k - a) / safe;
-    mx[i] = float(m * dx), my[i] = float(m * dy), mz[i] = float(m * dz), as[i] = float(a);
-    degenerate[i] = isDegenerate ? 1.0 : degenerate[i];
-  }
+  for (std::size_t i = 0; i < count; ++i) tx[i] += sign * sx[i], ty[i] += sign * sy[i], tz[i] += sign * sz[i];
 }
 
-PECTORA_WIDE void curvatureProducts(std::size_t count, ConstRow near, ConstRow far, RowCurvature curvature, Row pull) {
-  const double *nx = near.x, *ny = near.y, *nz = near.z;
-  const double *fx = far.x, *fy = far.y, *fz = far.z;
-  const float *mx = curvature.mx, *my = curvature.my, *mz = curvature.mz, *as = curvature.a;
-  double *px = pull.x, *py = pull.y, *pz = pull.z;
+PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature) {
+  const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
+  const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
+  const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
+  const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
+  float *as = curvature.a, *bs = curvature.b;
+  const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
+  const float floor = projected ? 0 : -INFINITY;
+  const std::size_t count = springs.count;
+  int degenerate = 0;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const double dx = fx[i] - nx[i], dy = fy[i] - ny[i], dz = fz[i] - nz[i];
-    const double ux = double(mx[i]), uy = double(my[i]), uz = double(mz[i]), a = double(as[i]);
-    const double along = ux * dx + uy * dy + uz * dz;
-    px[i] = a * dx + along * ux, py[i] = a * dy + along * uy, pz[i] = a * dz + along * uz;
+    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
+    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
+    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
+    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
+    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
+    const float safe = isDegenerate ? 1.0f : squared;
+    // l^2 - l0^2, without loss of digits.
+    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
+    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
+    const float across = k * growth / (safe + std::sqrt(safe * squared0));
+    const float a = across < floor ? floor : across;
+    as[i] = a, bs[i] = (k - a) / safe;
+    degenerate |= isDegenerate;
   }
+  return degenerate != 0;
+}
+
+PECTORA_WIDE bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> pull) {
+  const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
+  const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
+  const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
+  const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
+  const float *hx = vNear.x, *hy = vNear.y, *hz = vNear.z, *gx = vFar.x, *gy = vFar.y, *gz = vFar.z;
+  float *px = pull.x, *py = pull.y, *pz = pull.z;
+  const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
+  const float floor = projected ? 0 : -INFINITY;
+  const std::size_t count = springs.count;
+  int degenerate = 0;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
+    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
+    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
+    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
+    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
+    const float safe = isDegenerate ? 1.0f : squared;
+    // l^2 - l0^2, without loss of digits.
+    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
+    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
+    const float across = k * growth / (safe + std::sqrt(safe * squared0));
+    const float a = across < floor ? floor : across;
+    const float vx = gx[i] - hx[i], vy = gy[i] - hy[i], vz = gz[i] - hz[i];
+    const float along = (k - a) / safe * (dx * vx + dy * vy + dz * vz);
+    px[i] = a * vx + along * dx, py[i] = a * vy + along * dy, pz[i] = a * vz + along * dz;
+    degenerate |= isDegenerate;
+  }
+  return degenerate != 0;
 }
 
 }  // namespace pectora::lattice

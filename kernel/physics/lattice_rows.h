@@ -9,19 +9,22 @@ namespace pectora::lattice {
 /// A spring shorter than this part of its rest length has no direction of its own.
 inline constexpr double kDegenerate = 1e-12;
 
+template <class T>
 struct ConstRow {
-  const double *x, *y, *z;
+  const T *x, *y, *z;
 };
+template <class T>
 struct Row {
-  double *x, *y, *z;
+  T *x, *y, *z;
 };
 
-/// The springs of one row: near end i, far end i, for i below count.
+/// The springs of one row: near end i, far end i, for i below count, where they are now, in single precision how far they have
+/// moved from rest; and at rest. Rest lengths are the distances at rest; to compute them costs less than to read them.
+template <class T>
 struct RowSprings {
   std::size_t count;
-  ConstRow near, far;
-  const double* restLength;
-  double stiffness, compression;
+  ConstRow<T> near, far, restNear, restFar;
+  T stiffness, compression;
 };
 
 /// What a row adds up, column by column: twice the energy, the largest force, and 1 where a spring has no direction.
@@ -30,20 +33,24 @@ struct RowSums {
 };
 
 /// Forces on the near ends; those on the far ends are opposite. A degenerate spring gets none. `pull` is overwritten.
-void springForces(const RowSprings& springs, Row pull, RowSums sums);
+void springForces(const RowSprings<double>& springs, Row<double> pull, RowSums sums);
 /// The energy alone.
-void springEnergies(const RowSprings& springs, double* twiceEnergy);
+void springEnergies(const RowSprings<double>& springs, double* twiceEnergy);
 /// target += sign * source.
-void addRow(std::size_t count, ConstRow source, double sign, Row target);
+void addRow(std::size_t count, ConstRow<double> source, double sign, Row<double> target);
+void addRow(std::size_t count, ConstRow<float> source, float sign, Row<float> target);
 
-/// Second derivative of a row's springs: a I + m m^T with m = sqrt(b) n. Single precision: it only steers a solver, and
-/// stays exactly symmetric and, where projected, semi-definite.
+/// A spring shorter than this part of its rest length has no direction of its own in single precision.
+inline constexpr float kDegenerateSingle = 1e-5f;
+
+/// Second derivative of a row's springs: a I + b d d^T with d = far - near, a = k (1 - l0 / l), not below 0 if projected, and
+/// b = (k - a) / l^2. A degenerate spring gets a = b = 0. Single precision: it only steers a solver.
 struct RowCurvature {
-  float *mx, *my, *mz, *a;
+  float *a, *b;
 };
-/// a = k (1 - l0 / l), not below 0 if projected; b = k - a. A degenerate spring gets a = b = 0.
-void springCurvatures(const RowSprings& springs, bool projected, RowCurvature curvature, double* degenerate);
-/// pull = H (far - near).
-void curvatureProducts(std::size_t count, ConstRow near, ConstRow far, RowCurvature curvature, Row pull);
+/// Returns whether there is a degenerate spring.
+bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature);
+/// pull = H (vFar - vNear). A degenerate spring gives none; returns whether there is one.
+bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> pull);
 
 }  // namespace pectora::lattice

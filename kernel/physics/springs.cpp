@@ -1,6 +1,7 @@
 #include "kernel/physics/springs.h"
 
 #include "kernel/physics/hessian.h"
+#include "kernel/physics/workers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,10 +43,23 @@ SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, Vec3 restDir
   return {d * (std::sqrt(stiffness - a) / length), a};
 }
 
+// Springs that hold a free node to a driven one come first, node by node, so that pieces of them share no free node and can
+// be evaluated side by side. The others follow.
 class SpringTerm final : public Term {
  public:
   SpringTerm(std::string name, const System& system, std::vector<NodeSpring> springs)
       : name_(std::move(name)), freeNodes_(system.freeNodes), springs_(std::move(springs)) {
+    for (NodeSpring& s : springs_)
+      if (s.a >= freeNodes_) std::swap(s.a, s.b);
+    const auto holds = [&](const NodeSpring& s) { return s.a < freeNodes_ && s.b >= freeNodes_; };
+    std::erase_if(springs_, [&](const NodeSpring& s) { return s.a >= freeNodes_; });
+    const auto end = std::stable_partition(springs_.begin(), springs_.end(), holds);
+    std::stable_sort(springs_.begin(), end, [](const NodeSpring& s, const NodeSpring& t) { return s.a < t.a; });
+    held_ = std::size_t(end - springs_.begin());
+    for (std::size_t i = 0; i < held_; ++i)
+      if (pieces_.empty() || (i >= pieces_.back() + kPiece && springs_[i].a != springs_[i - 1].a)) pieces_.push_back(i);
+    pieces_.push_back(held_);
+
     for (const NodeSpring& s : springs_) {
       const Vec3 d = system.rest[s.b] - system.rest[s.a];
       restLengths_.push_back(norm(d));
@@ -57,28 +71,39 @@ class SpringTerm final : public Term {
   std::string name() const override { return name_; }
 
   double energy(const NodeVectors& positions) const override {
+    std::vector<double> energies(pieces());
+    forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) energies[piece] += at(i, positions).energy;
+    });
     double total = 0;
-    for (std::size_t i = 0; i < springs_.size(); ++i) total += at(i, positions).energy;
+    for (const double e : energies) total += e;
     return total;
   }
 
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
+    std::vector<double> energies(pieces()), largest(pieces());
+    forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SpringPull p = at(i, positions);
+        energies[piece] += p.energy;
+        largest[piece] = std::max(largest[piece], p.magnitude);
+        gradient.add(springs_[i].a, -p.force);
+        if (i >= held_) gradient.add(springs_[i].b, p.force);
+      }
+    });
     double total = 0;
-    for (std::size_t i = 0; i < springs_.size(); ++i) {
-      const SpringPull p = at(i, positions);
-      total += p.energy;
-      gradient.add(springs_[i].a, -p.force);
-      gradient.add(springs_[i].b, p.force);
-      largestForce = std::max(largestForce, p.magnitude);
+    for (std::size_t piece = 0; piece < pieces(); ++piece) {
+      total += energies[piece];
+      largestForce = std::max(largestForce, largest[piece]);
     }
     return total;
   }
 
   void addStiffnessBound(std::vector<double>& bound) const override {
-    for (const NodeSpring& s : springs_) {
-      const bool driven = s.a >= freeNodes_ || s.b >= freeNodes_;
-      bound[s.a] += (driven ? 1 : 2) * s.stiffnessNPerMm;
-      bound[s.b] += (driven ? 1 : 2) * s.stiffnessNPerMm;
+    for (std::size_t i = 0; i < springs_.size(); ++i) {
+      const NodeSpring& s = springs_[i];
+      bound[s.a] += (i < held_ ? 1 : 2) * s.stiffnessNPerMm;
+      if (i >= held_) bound[s.b] += 2 * s.stiffnessNPerMm;
     }
   }
 
@@ -91,52 +116,105 @@ class SpringTerm final : public Term {
   }
 
   const std::vector<NodeSpring>& springs() const { return springs_; }
+  /// How many springs, the first ones, hold a free node to a driven one.
+  std::size_t held() const { return held_; }
   SpringCurvature curvature(std::size_t i, const NodeVectors& positions, bool projected) const {
     return curvatureOf(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
                        springs_[i].stiffnessNPerMm, projected);
   }
 
+  /// The pieces of the springs that hold, and one more with the others.
+  std::size_t pieces() const { return pieces_.size(); }
+  /// Calls f(piece, first spring, end): the first ones side by side, and the last one after them.
+  template <class F>
+  void forEachPiece(F&& f) const {
+    parallelFor(pieces_.size() - 1, [&](std::size_t piece) { f(piece, pieces_[piece], pieces_[piece + 1]); });
+    f(pieces_.size() - 1, held_, springs_.size());
+  }
+
  private:
+  static constexpr std::size_t kPiece = 4096;
+
   SpringPull at(std::size_t i, const NodeVectors& positions) const {
     return pull(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
                 springs_[i].stiffnessNPerMm);
   }
 
   std::string name_;
-  std::size_t freeNodes_;
+  std::size_t freeNodes_, held_ = 0;
   std::vector<NodeSpring> springs_;
+  std::vector<std::size_t> pieces_;   // first springs, and the end of those that hold
   std::vector<double> restLengths_;
   std::vector<Vec3> restDirections_;
 };
 
+// What the springs that hold do to a free node adds up to one block a node, as long as the driven ends stand still.
 class SpringHessian final : public Hessian {
  public:
-  explicit SpringHessian(const SpringTerm& term) : term_(term), curvatures_(term.springs().size()) {}
-  void linearise(const NodeVectors& positions, bool projected) override {
-    for (std::size_t i = 0; i < curvatures_.size(); ++i) curvatures_[i] = term_.curvature(i, positions, projected);
+  explicit SpringHessian(const SpringTerm& term) : term_(term), curvatures_(term.springs().size()) {
+    for (std::size_t i = 0; i < term_.held(); ++i)
+      if (heldNodes_.empty() || heldNodes_.back() != term_.springs()[i].a) heldNodes_.push_back(term_.springs()[i].a), firstSpring_.push_back(i);
+    firstSpring_.push_back(term_.held());
+    heldBlocks_.resize(heldNodes_.size());
   }
-  void multiply(const NodeVectors& v, NodeVectors& y) const override {
-    for (std::size_t i = 0; i < curvatures_.size(); ++i) {
-      const NodeSpring& s = term_.springs()[i];
-      const SpringCurvature& c = curvatures_[i];
-      const Vec3 d = v[s.b] - v[s.a];
-      const Vec3 pull = d * c.a + c.m * dot(c.m, d);
-      y.add(s.a, -pull);
-      y.add(s.b, pull);
+
+  void linearise(const NodeVectors& positions, bool projected) override {
+    term_.forEachPiece([&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) curvatures_[i] = term_.curvature(i, positions, projected);
+    });
+    for (std::size_t n = 0; n < heldNodes_.size(); ++n) {
+      heldBlocks_[n] = {};
+      for (std::size_t i = firstSpring_[n]; i < firstSpring_[n + 1]; ++i) heldBlocks_[n] += block(i);
     }
   }
+
+  void multiply(const NodeVectors& v, NodeVectors& y) const override {
+    multiplyStill(v, y);
+    for (std::size_t i = 0; i < term_.held(); ++i) {
+      const Vec3 far = v[term_.springs()[i].b];
+      if (far.x != 0 || far.y != 0 || far.z != 0) y.add(term_.springs()[i].a, -(block(i) * far));
+    }
+  }
+  void multiplySingle(const SingleVectors& v, SingleVectors& y) const override { multiplyStill(v, y); }
+
   void addDiagonal(std::vector<Symmetric3>& blocks) const override {
+    for (std::size_t n = 0; n < heldNodes_.size(); ++n) blocks[heldNodes_[n]] += heldBlocks_[n];
+    for (std::size_t i = term_.held(); i < curvatures_.size(); ++i) {
+      blocks[term_.springs()[i].a] += block(i);
+      blocks[term_.springs()[i].b] += block(i);
+    }
+  }
+
+  void forEachCoupling(const Coupling& visit) const override {
     for (std::size_t i = 0; i < curvatures_.size(); ++i) {
-      const auto& [m, a] = curvatures_[i];
-      const Symmetric3 block{a + m.x * m.x, m.x * m.y, m.x * m.z, a + m.y * m.y, m.y * m.z, a + m.z * m.z};
-      blocks[term_.springs()[i].a] += block;
-      blocks[term_.springs()[i].b] += block;
+      const Symmetric3 h = block(i);
+      visit(term_.springs()[i].a, term_.springs()[i].b, {{{-h.xx, -h.xy, -h.xz}, {-h.xy, -h.yy, -h.yz}, {-h.xz, -h.yz, -h.zz}}});
     }
   }
 
  private:
+  Symmetric3 block(std::size_t i) const {
+    const auto& [m, a] = curvatures_[i];
+    return {a + m.x * m.x, m.x * m.y, m.x * m.z, a + m.y * m.y, m.y * m.z, a + m.z * m.z};
+  }
+  template <class Vectors>
+  void multiplyStill(const Vectors& v, Vectors& y) const {
+    for (std::size_t n = 0; n < heldNodes_.size(); ++n) {
+      const std::size_t node = heldNodes_[n];
+      y.set(node, y[node] + heldBlocks_[n] * v[node]);
+    }
+    for (std::size_t i = term_.held(); i < curvatures_.size(); ++i) {
+      const NodeSpring& s = term_.springs()[i];
+      const Vec3 pull = block(i) * (v[s.b] - v[s.a]);
+      y.set(s.a, y[s.a] - pull);
+      y.set(s.b, y[s.b] + pull);
+    }
+  }
+
   const SpringTerm& term_;
   std::vector<SpringCurvature> curvatures_;
+  std::vector<std::size_t> heldNodes_, firstSpring_;
+  std::vector<Symmetric3> heldBlocks_;
 };
 
 std::unique_ptr<Hessian> SpringTerm::makeHessian() const { return std::make_unique<SpringHessian>(*this); }

@@ -6,6 +6,12 @@
 
 namespace pectora {
 
+void SingleVectors::clear() {
+  std::fill(x.begin(), x.end(), 0.0f);
+  std::fill(y.begin(), y.end(), 0.0f);
+  std::fill(z.begin(), z.end(), 0.0f);
+}
+
 void NodeVectors::clear() {
   std::fill(x.begin(), x.end(), 0.0);
   std::fill(y.begin(), y.end(), 0.0);

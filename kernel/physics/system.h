@@ -23,6 +23,17 @@ struct NodeVectors {
   void clear();
 };
 
+/// The same in single precision, for what only steers a solver.
+struct SingleVectors {
+  std::vector<float> x, y, z;
+
+  explicit SingleVectors(std::size_t nodes = 0) : x(nodes), y(nodes), z(nodes) {}
+  std::size_t size() const { return x.size(); }
+  Vec3 operator[](std::size_t i) const { return {double(x[i]), double(y[i]), double(z[i])}; }
+  void set(std::size_t i, Vec3 v) { x[i] = float(v.x), y[i] = float(v.y), z[i] = float(v.z); }
+  void clear();
+};
+
 class Hessian;
 
 /// A spring between two nodes: energy 1/2 k (l - l0)^2, with k multiplied by `compression` while l < l0.
@@ -38,7 +49,8 @@ class Term {
   /// The effects that it stands for, for messages: "stretch, shear".
   virtual std::string name() const = 0;
   virtual double energy(const NodeVectors& positions) const = 0;
-  /// Returns the energy and adds its gradient (N) to `gradient`. Also raises `largestForce` to the largest force of a
+  /// Returns the energy and adds its gradient (N) to `gradient`. The gradient of driven nodes
+  /// means nothing. Also raises `largestForce` to the largest force of a
   /// single spring or element, the scale of the residual. The result does not depend on the number of threads.
   virtual double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const = 0;
   /// Adds to each node a bound of its stiffness: the sum over its springs of 2 k, or k where the other end is driven

@@ -12,6 +12,7 @@ class Movement {
   /// `start` null: from rest.
   Movement(const System& system, const Drive& drive, const NodeVectors* start) : system_(system), drive_(drive), start_(start) {}
 
+  bool isFromStart() const { return start_ != nullptr; }
   /// All nodes at the beginning.
   const NodeVectors& beginning() const { return start_ ? *start_ : system_.rest; }
   /// Writes the driven nodes' places after part t of the movement, 0 to 1.

@@ -5,9 +5,12 @@
 
 namespace pectora {
 
-Newton::Newton(const System& system)
-    : hessian_(makeHessian(system)), metric_(system.rest.size()), direction_(system.rest.size()), r_(direction_), z_(direction_),
-      p_(direction_), hp_(direction_) {}
+Newton::Newton(const System& system, std::shared_ptr<Metric> metric)
+    : hessian_(makeHessian(system)), metric_(std::move(metric)), direction_(system.rest.size()) {
+  if (metric_) single_ = ConjugateGradients<SingleVectors>(std::max(system.freeNodes, system.anchorNode(0)));
+}
+
+bool Newton::usesMetric(const Objective& objective) const { return metric_ && !objective.inertia(); }
 
 bool Newton::isFor(const System& system) {
   return std::all_of(system.terms.begin(), system.terms.end(), [](const auto& term) { return term->hasHessian(); });
@@ -15,63 +18,54 @@ bool Newton::isFor(const System& system) {
 
 void Newton::linearise(const Objective& objective, const NodeVectors& x, bool projected) {
   hessian_->linearise(x, projected);
-  std::fill(metric_.begin(), metric_.end(), Symmetric3{});
-  hessian_->addDiagonal(metric_);
+  if (usesMetric(objective)) {
+    metric_->refresh(x);
+    return;
+  }
+  if (double_.size() == 0) double_ = ConjugateGradients<NodeVectors>(x.size());
+  blocks_.assign(x.size(), {});
+  hessian_->addDiagonal(blocks_);
   for (std::size_t i = 0; i < objective.system().freeNodes; ++i) {
-    if (objective.inertia()) metric_[i].addIdentity(objective.inertia()->weight[i]);
-    metric_[i] = inverse(metric_[i]);
+    if (objective.inertia()) blocks_[i].addIdentity(objective.inertia()->weight[i]);
+    blocks_[i] = inverse(blocks_[i]);
   }
 }
 
-// Conjugate gradients for H d = -g. Where the model falls along a direction without end (it is a ridge or a saddle), that
-// direction is taken as far as if the curvature had the other sign, and is the last: d always leads down.
 void Newton::solve(const Objective& objective, const NodeVectors& gradient, double forcing, const std::function<void()>& poll) {
   const std::size_t free = objective.system().freeNodes;
-  const auto applyMetric = [&] {
-    for (std::size_t i = 0; i < free; ++i) z_.set(i, metric_[i] * r_[i]);
-  };
-  direction_.clear();
-  p_.clear();
-  for (std::size_t i = 0; i < free; ++i) r_.set(i, -gradient[i]);
-  applyMetric();
-  scaleAndAdd(z_, 0, p_, free);
-  double rz = dot(r_, z_, free);
-  const double target = forcing * forcing * rz;
-  const int most = int(std::min<std::size_t>(3 * free + 10, 2000));
-  for (int n = 0; n < most && rz > target; ++n) {
-    if (n % 16 == 15) poll();
-    hp_.clear();
-    hessian_->multiply(p_, hp_);
-    ++products_;
-    if (const Inertia* inertia = objective.inertia())
-      for (std::size_t i = 0; i < free; ++i) hp_.add(i, p_[i] * inertia->weight[i]);
-    const double curvature = dot(p_, hp_, free);
-    if (!(curvature > 1e-14 * rz)) {
-      axpy(rz / std::max(-curvature, 1e-2 * rz), p_, direction_, free);
-      return;
-    }
-    const double step = rz / curvature;
-    axpy(step, p_, direction_, free);
-    axpy(-step, hp_, r_, free);
-    applyMetric();
-    const double next = dot(r_, z_, free);
-    scaleAndAdd(z_, next / rz, p_, free);
-    rz = next;
+  if (usesMetric(objective)) {
+    single_.solve(
+        free, gradient, forcing, [&](const SingleVectors& v, SingleVectors& hv) { hessian_->multiplySingle(v, hv); },
+        [&](const SingleVectors& r, SingleVectors& z) { metric_->apply(r, z); }, poll);
+    for (std::size_t i = 0; i < free; ++i) direction_.set(i, single_.solution()[i]);
+    return;
   }
+  double_.solve(
+      free, gradient, forcing,
+      [&](const NodeVectors& v, NodeVectors& hv) {
+        hessian_->multiply(v, hv);
+        if (const Inertia* inertia = objective.inertia())
+          for (std::size_t i = 0; i < free; ++i) hv.add(i, v[i] * inertia->weight[i]);
+      },
+      [&](const NodeVectors& r, NodeVectors& z) {
+        for (std::size_t i = 0; i < free; ++i) z.set(i, blocks_[i] * r[i]);
+      },
+      poll);
+  direction_ = double_.solution();
 }
 
-void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVectors& next, const std::function<void()>& poll) {
+void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVectors& next, double forcing, const std::function<void()>& poll) {
   linearise(objective, x, true);
   NodeVectors moved(x.size()), force(x.size());
   for (std::size_t i = objective.system().freeNodes; i < x.size(); ++i) moved.set(i, next[i] - x[i]);
   hessian_->multiply(moved, force);
-  solve(objective, force, 1e-2, poll);
+  solve(objective, force, forcing, poll);
   axpy(1, direction_, next, objective.system().freeNodes);
 }
 
 Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) {
   const std::size_t free = objective.system().freeNodes;
-  Evaluation trial;
+  Trial trial;
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
   const double firstNorm = std::sqrt(dot(e.gradient, e.gradient, free));
@@ -91,7 +85,7 @@ Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation&
       continue;
     }
     // Down the metric's steepest descent, and no way down at all is the end.
-    for (std::size_t i = 0; i < free; ++i) direction_.set(i, metric_[i] * -e.gradient[i]);
+    solve(objective, e.gradient, 1, watch.poll);
     if (searchLine(objective, x, e, direction_, 1, trial) == 0) return e.isWithin(limits.tolerance) ? Outcome::converged : Outcome::stalled;
   }
   watch.iteration(e);

@@ -18,18 +18,25 @@ void forEachPiece(std::size_t count, F&& f) {
 }
 
 // Four sums side by side, so that additions do not wait for each other.
-double dot(const double* a, const double* b, std::size_t count) {
+template <class A, class B>
+double dot(const A* a, const B* b, std::size_t count) {
   double sums[4] = {};
   std::size_t i = 0;
   for (; i + 4 <= count; i += 4)
-    for (int lane = 0; lane < 4; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-  for (; i < count; ++i) sums[0] += a[i] * b[i];
+    for (int lane = 0; lane < 4; ++lane) sums[lane] += double(a[i + lane]) * double(b[i + lane]);
+  for (; i < count; ++i) sums[0] += double(a[i]) * double(b[i]);
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+template <class X, class Y>
+void axpy(double s, const X* x, Y* y, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) y[i] = Y(double(y[i]) + s * double(x[i]));
 }
 
 }  // namespace
 
-double dot(const NodeVectors& a, const NodeVectors& b, std::size_t count) {
+template <class A, class B>
+double dot(const A& a, const B& b, std::size_t count) {
   std::vector<double> sums((count + kPiece - 1) / kPiece);
   forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
@@ -40,20 +47,40 @@ double dot(const NodeVectors& a, const NodeVectors& b, std::size_t count) {
   return total;
 }
 
-void axpy(double s, const NodeVectors& x, NodeVectors& y, std::size_t count) {
+template <class X, class Y>
+void axpy(double s, const X& x, Y& y, std::size_t count) {
   forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y.x[i] += s * x.x[i];
-    for (std::size_t i = begin; i < end; ++i) y.y[i] += s * x.y[i];
-    for (std::size_t i = begin; i < end; ++i) y.z[i] += s * x.z[i];
+    axpy(s, &x.x[begin], &y.x[begin], end - begin);
+    axpy(s, &x.y[begin], &y.y[begin], end - begin);
+    axpy(s, &x.z[begin], &y.z[begin], end - begin);
   });
 }
 
-void scaleAndAdd(const NodeVectors& x, double s, NodeVectors& y, std::size_t count) {
+template <class Vectors>
+void scaleAndAdd(const Vectors& x, double s, Vectors& y, std::size_t count) {
+  using Number = typename decltype(x.x)::value_type;
+  const Number factor = Number(s);
   forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y.x[i] = x.x[i] + s * y.x[i];
-    for (std::size_t i = begin; i < end; ++i) y.y[i] = x.y[i] + s * y.y[i];
-    for (std::size_t i = begin; i < end; ++i) y.z[i] = x.z[i] + s * y.z[i];
+    for (std::size_t i = begin; i < end; ++i) y.x[i] = x.x[i] + factor * y.x[i];
+    for (std::size_t i = begin; i < end; ++i) y.y[i] = x.y[i] + factor * y.y[i];
+    for (std::size_t i = begin; i < end; ++i) y.z[i] = x.z[i] + factor * y.z[i];
   });
+}
+
+template double dot(const NodeVectors&, const NodeVectors&, std::size_t);
+template double dot(const NodeVectors&, const SingleVectors&, std::size_t);
+template double dot(const SingleVectors&, const SingleVectors&, std::size_t);
+template void axpy(double, const NodeVectors&, NodeVectors&, std::size_t);
+template void axpy(double, const SingleVectors&, NodeVectors&, std::size_t);
+template void axpy(double, const SingleVectors&, SingleVectors&, std::size_t);
+
+template void scaleAndAdd(const NodeVectors&, double, NodeVectors&, std::size_t);
+template void scaleAndAdd(const SingleVectors&, double, SingleVectors&, std::size_t);
+
+double longest(const SingleVectors& v, std::size_t count) {
+  float squared = 0;
+  for (std::size_t i = 0; i < count; ++i) squared = std::max(squared, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
+  return std::sqrt(double(squared));
 }
 
 double negligibleForce(const System& system) {

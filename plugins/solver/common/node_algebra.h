@@ -6,12 +6,19 @@
 
 namespace pectora {
 
-/// sum a_i . b_i over nodes [0, count).
-double dot(const NodeVectors& a, const NodeVectors& b, std::size_t count);
-/// y_i += s x_i over nodes [0, count).
-void axpy(double s, const NodeVectors& x, NodeVectors& y, std::size_t count);
+/// sum a_i . b_i over nodes [0, count), in double precision. A and B are NodeVectors or SingleVectors, but for B beside a
+/// single A.
+template <class A, class B>
+double dot(const A& a, const B& b, std::size_t count);
+/// y_i += s x_i over nodes [0, count). X and Y are NodeVectors or SingleVectors.
+template <class X, class Y>
+void axpy(double s, const X& x, Y& y, std::size_t count);
 /// y_i = x_i + s y_i over nodes [0, count).
-void scaleAndAdd(const NodeVectors& x, double s, NodeVectors& y, std::size_t count);
+template <class Vectors>
+void scaleAndAdd(const Vectors& x, double s, Vectors& y, std::size_t count);
+
+/// The length of the longest vector of nodes [0, count).
+double longest(const SingleVectors& v, std::size_t count);
 
 /// The largest force on a free node, and where. Infinite if one is not finite.
 struct Residual {

@@ -20,11 +20,13 @@ void Objective::evaluate(const NodeVectors& x, Evaluation& e) const {
   e.negligible = negligible_;
 }
 
-double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, const NodeVectors& d, double firstStep, Evaluation& trial) {
+template <class D>
+double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, const D& d, double firstStep, Trial& room) {
+  auto& [trial, place] = room;
   const std::size_t count = objective.system().freeNodes;
   const double slope = dot(e.gradient, d, count);
   if (!(slope < 0)) return 0;
-  NodeVectors place = x;
+  place = x;
   double step = firstStep, before = 0;
   for (int halving = 0; halving < 40; ++halving) {
     axpy(step - before, d, place, count);
@@ -44,5 +46,8 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
   }
   return 0;
 }
+
+template double searchLine(const Objective&, NodeVectors&, Evaluation&, const NodeVectors&, double, Trial&);
+template double searchLine(const Objective&, NodeVectors&, Evaluation&, const SingleVectors&, double, Trial&);
 
 }  // namespace pectora

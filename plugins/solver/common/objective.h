@@ -60,15 +60,23 @@ class Minimiser {
   struct Limits {
     double tolerance = 1e-4;
     int iterations = 100;
+    double accuracy = 0;   ///< mm; if above 0, being about so near the minimum will do as well
   };
   /// `x` is where to begin and becomes the end, which is always finite and no higher than the beginning; `e` is the
   /// objective there. `iterations` is raised.
   virtual Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) = 0;
 };
 
+/// Room for what is tried.
+struct Trial {
+  Evaluation evaluation;
+  NodeVectors place;
+};
+
 /// Goes from x along d until the objective has fallen (Armijo, 1e-4), halving the step at need. Where rounding hides the
-/// fall, a slope that has become flatter will do (Hager and Zhang 2005). `x` and `e` move to the new place and `trial` is
-/// overwritten. Returns the step, 0 if there was none.
-double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, const NodeVectors& d, double firstStep, Evaluation& trial);
+/// fall, a slope that has become flatter will do (Hager and Zhang 2005). `x` and `e` move to the new place,
+/// and the old ones are left in `trial`. Returns the step, 0 if there was none. D is NodeVectors or SingleVectors.
+template <class D>
+double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, const D& d, double firstStep, Trial& trial);
 
 }  // namespace pectora

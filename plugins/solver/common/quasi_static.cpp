@@ -25,9 +25,10 @@ double largestDistance(const NodeVectors& a, const NodeVectors& b, std::size_t c
 
 class QuasiStatic final : public Session {
  public:
-  QuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser, int stepIterations)
-      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations) {
-    if (Newton::isFor(system)) predictor_ = std::make_unique<Newton>(system);
+  QuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser, int stepIterations,
+              Acceleration acceleration)
+      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations), acceleration_(acceleration) {
+    if (Newton::isFor(system)) predictor_ = std::make_unique<Newton>(system, acceleration.metric);
   }
 
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
@@ -63,18 +64,21 @@ class QuasiStatic final : public Session {
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
       NodeVectors trial = x;
       movement.apply(next, trial);
-      if (predictor_) predictor_->predict(objective, x, trial, [&] { host.checkCancel(); });
+      if (predictor_) predictor_->predict(objective, x, trial, acceleration_.forcing, [&] { host.checkCancel(); });
       const NodeVectors predicted = trial;
       const int left = most - solution.iterations;
-      const double tolerance = isLast ? settings_.tolerance : std::max(settings_.tolerance, kLooseTolerance);
-      const Outcome outcome = minimise(objective, trial, end, tolerance, isLast ? left : std::min(left, stepIterations_), next, solution, host);
+      const double tolerance = std::max(settings_.tolerance, kLooseTolerance);
+      Outcome outcome = minimise(objective, trial, end, tolerance, std::min(left, stepIterations_), next, solution, host);
       const bool isExhausted = solution.iterations >= most;
-      // A last step that comes near, but not to its tolerance, would not get nearer in smaller steps.
-      const bool isNear = outcome != Outcome::diverged && end.isWithin(kLooseTolerance);
-      const bool isOnCourse = isLeast || !predictor_ || largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
+      const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end.isWithin(kLooseTolerance));
+      // From a given start there is no path to keep to.
+      const bool isOnCourse = isLeast || !predictor_ || movement.isFromStart() ||
+                              largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
       if ((isNear && isOnCourse) || isLeast || isExhausted) {
         x = std::move(trial);
         t = next;
+        if (isLast && isNear && settings_.tolerance < tolerance && !isAccurate(outcome, end, tolerance))
+          outcome = minimise(objective, x, end, settings_.tolerance, most - solution.iterations, 1, solution, host);
         solution.status = isLast ? statusOf(outcome) : SolveStatus::stalled;
         if (isLast || isExhausted || !isNear) break;
         step = std::min(wholeStep, 2 * step);
@@ -104,9 +108,13 @@ class QuasiStatic final : public Session {
       host.progress(progress(now.relativeResidual(), tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
     };
-    return minimiser_->minimise(objective, x, end, {tolerance, iterations}, solution.iterations, watch);
+    return minimiser_->minimise(objective, x, end, {tolerance, iterations, acceleration_.accuracy}, solution.iterations, watch);
   }
 
+  // Converged by nearness rather than by the residual: then that is what was asked for.
+  static bool isAccurate(Outcome outcome, const Evaluation& end, double tolerance) {
+    return outcome == Outcome::converged && !end.isWithin(tolerance);
+  }
   // Decades of the residual from 1 to the tolerance.
   static double progress(double relative, double tolerance) {
     return std::clamp(std::log(std::max(relative, 1e-300)) / std::log(tolerance), 0.0, 1.0);
@@ -120,6 +128,7 @@ class QuasiStatic final : public Session {
   QuasiStaticSettings settings_;
   std::unique_ptr<Minimiser> minimiser_;
   int stepIterations_;
+  Acceleration acceleration_;
   std::unique_ptr<Newton> predictor_;   // null if an effect has no Hessian
 };
 
@@ -131,9 +140,9 @@ void QuasiStaticSettings::describe(Visitor& v) {
   v.real("load_step", loadStep, "mm", {1e-3, 1e6}, {1, 50}, "How far the bar may move at once; a step that does not come to rest is halved");
 }
 
-std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings,
-                                         std::unique_ptr<Minimiser> minimiser, int stepIterations) {
-  return std::make_unique<QuasiStatic>(system, settings, std::move(minimiser), stepIterations);
+std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser,
+                                         int stepIterations, Acceleration acceleration) {
+  return std::make_unique<QuasiStatic>(system, settings, std::move(minimiser), stepIterations, std::move(acceleration));
 }
 
 }  // namespace pectora

@@ -2,6 +2,7 @@
 // minimised from the end of the last.
 #pragma once
 
+#include "plugins/solver/common/metric.h"
 #include "plugins/solver/common/objective.h"
 
 #include "kernel/stage/solver.h"
@@ -14,10 +15,18 @@ struct QuasiStaticSettings {
   void describe(Visitor& v);
 };
 
+/// What makes it faster.
+struct Acceleration {
+  std::shared_ptr<Metric> metric;   ///< for the linear answer
+  double forcing = 1e-2;            ///< the error of the linear answer, as a part of it
+  double accuracy = 0;              ///< see Minimiser::Limits
+};
+
 /// A session around a minimiser. Every load step begins at the linear answer to the bar's movement, and one that comes to
-/// rest elsewhere, or nowhere, is halved, to 1/4 at the least: so that the wall keeps to its path from rest where it can. If a given start does not lead to rest, it begins again from rest. `stepIterations` is what one load step may take. Where an effect has no Hessian there is no linear answer:
-/// the steps are a tenth as long.
-std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings,
-                                         std::unique_ptr<Minimiser> minimiser, int stepIterations);
+/// rest elsewhere, or nowhere, is halved, to 1/4 at the least: so that the wall keeps to its path from rest where it can. If
+/// a given start does not lead to rest, it begins again from rest. `stepIterations` is what one load step may take. Where an
+/// effect has no Hessian there is no linear answer: the steps are a tenth as long.
+std::unique_ptr<Session> makeQuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser,
+                                         int stepIterations, Acceleration acceleration = {});
 
 }  // namespace pectora

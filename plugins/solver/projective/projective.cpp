@@ -26,16 +26,16 @@ class ProjectiveMetric final : public Metric {
     if (!isRegular) throw Error("some points hang together, but on nothing that holds them").advise("Call effect.attachment and effect.cross in the scene");
   }
 
-  void refresh(const NodeVectors&) override {}
-  void apply(const NodeVectors& g, NodeVectors& d) const override {
+  bool refresh(const NodeVectors&) override { return false; }
+  void apply(const SingleVectors& g, SingleVectors& d) const override {
     // The three axes at once.
     Eigen::MatrixX3d right(free_, 3);
-    right << Eigen::Map<const Eigen::VectorXd>(g.x.data(), free_), Eigen::Map<const Eigen::VectorXd>(g.y.data(), free_),
-        Eigen::Map<const Eigen::VectorXd>(g.z.data(), free_);
+    right << Eigen::Map<const Eigen::VectorXf>(g.x.data(), free_).cast<double>(), Eigen::Map<const Eigen::VectorXf>(g.y.data(), free_).cast<double>(),
+        Eigen::Map<const Eigen::VectorXf>(g.z.data(), free_).cast<double>();
     const Eigen::MatrixX3d solved = factors_.solve(right);
-    Eigen::Map<Eigen::VectorXd>(d.x.data(), free_) = solved.col(0);
-    Eigen::Map<Eigen::VectorXd>(d.y.data(), free_) = solved.col(1);
-    Eigen::Map<Eigen::VectorXd>(d.z.data(), free_) = solved.col(2);
+    Eigen::Map<Eigen::VectorXf>(d.x.data(), free_) = solved.col(0).cast<float>();
+    Eigen::Map<Eigen::VectorXf>(d.y.data(), free_) = solved.col(1).cast<float>();
+    Eigen::Map<Eigen::VectorXf>(d.z.data(), free_) = solved.col(2).cast<float>();
   }
 
  private:

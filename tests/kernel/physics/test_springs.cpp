@@ -47,7 +47,7 @@ double gradientError(const System& system, const Term& term, NodeVectors x) {
   double largest = 0, error = 0;
   term.evaluate(x, gradient, largest);
   const double h = 1e-5;
-  for (std::size_t i = 0; i < system.rest.size(); i += 7) {
+  for (std::size_t i = 0; i < system.freeNodes; i += 7) {
     for (std::vector<double> NodeVectors::*axis : {&NodeVectors::x, &NodeVectors::y, &NodeVectors::z}) {
       double& coordinate = (x.*axis)[i];
       const double here = coordinate;

@@ -11,7 +11,8 @@ class Family : public testing::TestWithParam<const char*> {};
 
 std::string nameOf(const testing::TestParamInfo<const char*>& info) { return std::string(info.param).substr(7); }
 
-const auto kMotion = testing::Values("solver.verlet", "solver.semi_implicit", "solver.implicit", "solver.newton", "solver.lbfgs", "solver.projective");
+const auto kMotion = testing::Values("solver.verlet", "solver.semi_implicit", "solver.implicit", "solver.newton", "solver.multigrid", "solver.lbfgs",
+                                   "solver.projective");
 INSTANTIATE_TEST_SUITE_P(Solver, Family, kMotion, nameOf);
 
 // A limit on iterations that no solver needs here, and a tolerance of 1e-8 (forces are about 1 N, stiffness 0.1 N/mm and

@@ -128,7 +128,7 @@ TEST(Newton, ConvergesFasterThanLinearlyAtTheEnd) {
   Newton newton(system);
   NodeVectors x = system.rest;
   for (std::size_t i = system.freeNodes; i < x.size(); ++i)
-    x.y[i] -= 10 * std::exp(-(std::pow(x.x[i] - 32, 2) + std::pow(x.z[i] - 32, 2)) / 400);
+    x.y[i] -= 3 * std::exp(-(std::pow(x.x[i] - 32, 2) + std::pow(x.z[i] - 32, 2)) / 400);
   const Result result = minimise(newton, system, x, 1e-10, 100);
   EXPECT_EQ(result.outcome, Outcome::converged);
   EXPECT_LE(result.iterations, 20);

@@ -1,0 +1,41 @@
+#include "plugins/solver/multigrid/block_rows.h"
+
+// One copy of each loop for wide registers, chosen when the program is loaded. (Sanitizers do not survive the choice.)
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define PECTORA_WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define PECTORA_WIDE
+#endif
+
+namespace pectora {
+
+PECTORA_WIDE void addBlockProducts(std::size_t count, BlockRow a, bool transposed, ConstFloatRow in, FloatRow out) {
+  const std::size_t s = a.stride, lower = transposed ? 1 : 3, upper = transposed ? 3 : 1;   // of entry (i, j): i lower + j upper
+  const float *x = in.x, *y = in.y, *z = in.z;
+  const float *xx = a.entries, *xy = xx + upper * s, *xz = xx + 2 * upper * s;
+  const float *yx = xx + lower * s, *yy = yx + upper * s, *yz = yx + 2 * upper * s;
+  const float *zx = xx + 2 * lower * s, *zy = zx + upper * s, *zz = zx + 2 * upper * s;
+  float *px = out.x, *py = out.y, *pz = out.z;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    px[i] += xx[i] * x[i] + xy[i] * y[i] + xz[i] * z[i];
+    py[i] += yx[i] * x[i] + yy[i] * y[i] + yz[i] * z[i];
+    pz[i] += zx[i] * x[i] + zy[i] * y[i] + zz[i] * z[i];
+  }
+}
+
+PECTORA_WIDE void setSymmetricProducts(std::size_t count, BlockRow a, ConstFloatRow in, FloatRow out) {
+  const std::size_t s = a.stride;
+  const float *x = in.x, *y = in.y, *z = in.z;
+  const float *xx = a.entries, *xy = xx + s, *xz = xx + 2 * s, *yy = xx + 3 * s, *yz = xx + 4 * s, *zz = xx + 5 * s;
+  float *px = out.x, *py = out.y, *pz = out.z;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = x[i], v = y[i], w = z[i];
+    px[i] = xx[i] * u + xy[i] * v + xz[i] * w;
+    py[i] = xy[i] * u + yy[i] * v + yz[i] * w;
+    pz[i] = xz[i] * u + yz[i] * v + zz[i] * w;
+  }
+}
+
+}  // namespace pectora

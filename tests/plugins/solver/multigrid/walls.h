@@ -1,0 +1,53 @@
+// Fine walls, in which many points span the reach of the bar.
+#pragma once
+
+#include "kernel/physics/springs.h"
+
+#include <cmath>
+
+namespace pectora {
+
+// n x n points 2 mm apart and 20 mm thick with the paper's stencil, each pleura point tied to three anchors.
+inline System fineWall(int n) {
+  System system;
+  system.rows = system.columns = n;
+  const std::size_t layer = std::size_t(n) * n;
+  system.freeNodes = 2 * layer;
+  system.rest = NodeVectors(5 * layer);
+  std::vector<NodeSpring> ties;
+  for (std::size_t i = 0; i < 5 * layer; ++i) {
+    const std::size_t point = i % layer, anchor = i / layer;
+    const double turn = 2.0 * M_PI / 3 * double(anchor);
+    const Vec3 away = anchor < 2 ? Vec3{0, anchor == 0 ? -20.0 : 0.0, 0} : Vec3{8 * std::cos(turn), 4, 8 * std::sin(turn)};
+    system.rest.set(i, Vec3{2.0 * double(point % n), 0, 2.0 * double(point / n)} + away);
+    if (anchor >= 2) ties.push_back({layer + point, i, 5});
+  }
+  system.mass.assign(system.freeNodes, 1e-4);
+  std::vector<StencilSpring> stencil;
+  for (int r = -2; r <= 2; ++r)
+    for (int c = -2; c <= 2; ++c) {
+      stencil.push_back({Layer::outer, Layer::inner, r, c, 1});
+      if (r > 0 || (r == 0 && c > 0)) stencil.push_back({Layer::outer, Layer::outer, r, c, 1});
+    }
+  system.terms.push_back(makeLatticeTerm("lattice", system, stencil));
+  system.terms.push_back(makeSpringTerm("ties", system, ties));
+  return system;
+}
+
+// The anchors in the middle go forwards, with a Gaussian of 12 mm.
+inline Drive bump(const System& system, double height) {
+  Drive drive;
+  const double middle = system.columns - 1;
+  for (const double part : {0.0, 1.0}) {
+    std::vector<Vec3> frame;
+    for (std::size_t i = system.freeNodes; i < system.rest.size(); ++i) {
+      Vec3 p = system.rest[i];
+      p.y -= part * height * std::exp(-(std::pow(p.x - middle, 2) + std::pow(p.z - middle, 2)) / (2 * 12 * 12));
+      frame.push_back(p);
+    }
+    drive.frames.push_back(std::move(frame));
+  }
+  return drive;
+}
+
+}  // namespace pectora
