@@ -50,7 +50,7 @@ class VolumeMesh final : public Stage {
   int cells_ = 0;
   double reach_ = 40;
   Tissue fat_{"fat", 3, 0, 930}, muscle_{"muscle", 20, 0, 1060}, bone_{"bone", 1000, 0.3, 1200};
-  double poissonsRatio_ = 0.49;
+  double poissonsRatio_ = 0.45;
 };
 
 }  // namespace
