@@ -23,7 +23,7 @@ CellModuli moduliOf(double youngsModulusKPa, double poissonsRatio);
 /// 1/2 (Nagtegaal, Parks and Rice 1974); at small strain it is the B-bar hexahedron (Hughes 1980). It is a potential, finite
 /// for any positions, also of cells that are turned inside out.
 ///
-/// Throws Error naming the first cell whose rest shape has no positive volume at every point of quadrature.
+/// Its stiffness bound is that of the rest shape. Throws Error naming the first cell whose rest shape has no positive volume at every point of quadrature.
 std::unique_ptr<Term> makeCellTerm(std::string name, const System& system, const std::vector<CellModuli>& cells);
 
 }  // namespace pectora
