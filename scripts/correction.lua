@@ -7,6 +7,7 @@ local p = parameters{
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
   { name = "icp", default = true, doc = "After the landmarks, bring the scan closer by the surfaces that the operation does not change" },
   { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
+  { name = "model", default = "two_layer", choices = { "two_layer", "volume_mesh" }, doc = "The wall as two layers of points joined by springs, or as a solid of fat, muscle and bone" },
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
@@ -20,16 +21,17 @@ local ct = loader.dicom{ path = p.ct, series = p.series }
 local anatomy = segmenter.thorax(ct, { edge = p.edge })
 local cage = splines.cartilage(anatomy, ct)
 
--- Model: two layers of points, and the effects that this scene calls for.
+-- Model: the wall as springs or as a solid, and the effects that this scene calls for.
 local skin = { compression = p.skin_compression }
-local scene = model.two_layer(cage, {
-  spacing = p.spacing,
-  effects = {
-    effect.stretch(skin), effect.shear(skin), effect.bend(skin),   -- within the skin
-    effect.direct{}, effect.cross{},                               -- between skin and pleura
-    effect.attachment{},                                           -- of the pleura to the rib cage
-  },
-})
+local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.attachment{} }   -- within the skin; pleura to rib cage
+local scene
+if p.model == "two_layer" then
+  effects[5], effects[6] = effect.direct{}, effect.cross{}   -- springs between skin and pleura
+  scene = model.two_layer(cage, { spacing = p.spacing, effects = effects })
+else
+  effects[5] = effect.tissue{}
+  scene = model.volume_mesh(cage, ct, { spacing = p.spacing, effects = effects })
+end
 
 -- Operation: the bar lifts the sternum, the solver finds the skin.
 local plan = planner.nuss(cage, { lift = p.lift })

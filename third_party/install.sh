@@ -13,8 +13,8 @@ packages=(
   liblua5.4-dev libcli11-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libxxhash-dev
   # Pictures
   libcairo2-dev fonts-dejavu-core
-  # Tests
-  libgtest-dev
+  # Tests; CalculiX to compare the solid wall with
+  libgtest-dev calculix-ccx
 )
 
 missing=()

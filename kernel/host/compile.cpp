@@ -97,7 +97,7 @@ Compiled compile(const Scene& scene, Registry& registry) {
     if (bound[i] <= 0) ++loose, first = i;
   if (loose > 0)
     throw Error(fmt::format("{} of {} points are held by no spring", loose, bound.size()))
-        .at(system.nodeName(first) + " and others").advise("Call the effects cross (or direct) and attachment in the scene");
+        .at(system.nodeName(first) + " and others").advise("Call the effects cross (or direct) and attachment in the scene; of a solid wall tissue and attachment");
   return compiled;
 }
 

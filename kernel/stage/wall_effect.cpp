@@ -5,7 +5,7 @@
 namespace pectora {
 
 CrossStiffness WallSprings::calibrate(const Scene& scene, std::vector<std::string>& notes) const {
-  const CrossStiffness cross = calibrateCross(youngsModulus * 1e-3, scene.rowSpacing, scene.columnSpacing, scene.thickness);
+  const CrossStiffness cross = calibrateCross(1.25e-3 * youngsModulus / (1 + poissonsRatio), scene.rowSpacing, scene.columnSpacing, scene.thickness);
   if (!cross.isFeasible)
     notes.push_back(fmt::format("the wall of {:.1f} mm is too thick for a spacing of {:.1f} x {:.1f} mm: its shear is too soft; "
                                 "a spacing of {:.0f} mm would be right",

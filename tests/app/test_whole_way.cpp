@@ -86,6 +86,14 @@ TEST(WholeWay, KeepsThePatientsNameOutOfEverything) {
   EXPECT_EQ(runs().table.find("PHANTOM"), std::string::npos);
 }
 
+TEST(WholeWay, PredictsWithTheSolidWallToo) {
+  const fs::path log = runs().folder / "solid.txt", out = runs().folder / "solid";
+  ASSERT_EQ(run("run correction model=volume_mesh spacing=14 lift=25 slices=0 ct=" + (runs().folder / "patient/dicom").string() + " out=" + out.string(), log), 0) << readFile(log);
+  const std::string summary = readFile(out / "summary.json");
+  for (const char* stage : {"model.volume_mesh", "effect.tissue"}) EXPECT_NE(summary.find(std::string("\"stage\": \"") + stage + "\""), std::string::npos) << stage;
+  EXPECT_NE(readFile(log).find("ct vs simulated, pit"), std::string::npos);
+}
+
 TEST(WholeWay, ExplainsWithoutSolving) {
   const fs::path log = runs().folder / "explain.txt";
   ASSERT_EQ(run("explain --quiet correction ct=" + (runs().folder / "patient/dicom").string() + " out=" + (runs().folder / "never").string(), log), 0) << readFile(log);

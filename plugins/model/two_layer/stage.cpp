@@ -1,5 +1,6 @@
-#include "plugins/model/two_layer/anchors.h"
-#include "plugins/model/two_layer/layers.h"
+#include "plugins/model/common/anchors.h"
+#include "plugins/model/common/layers.h"
+#include "plugins/model/two_layer/masses.h"
 
 #include "kernel/stage/plugin.h"
 
@@ -11,10 +12,9 @@ using namespace pectora;
 class TwoLayer final : public Stage {
  public:
   void describe(Visitor& v) override {
-    v.real("spacing", settings_.spacing, "mm", {1, 50}, {4, 12}, "Distance between neighbouring skin points");
-    v.real("margin", settings_.margin, "mm", {0, 200}, {0, 60}, "How far the model reaches above the sternum and below the ribs");
+    settings_.describe(v);
     v.real("reach", reach_, "mm", {1, 1000}, {20, 80}, "Pleura further than this from every rib, cartilage and the sternum lies on the abdomen and is held in place");
-    v.real("density", settings_.density, "kg/m3", {1, 20000}, {900, 1100}, "Density of the chest wall");
+    v.real("density", density_, "kg/m3", {1, 20000}, {900, 1100}, "Density of the chest wall");
   }
 
   Outputs run(const Inputs& inputs, Host& host) override {
@@ -23,6 +23,7 @@ class TwoLayer final : public Stage {
     for (const Handle& effect : inputs.handles("effects"))
       scene->effects.push_back(std::dynamic_pointer_cast<const EffectCall>(effect.value));
     buildLayers(settings_, *scene);
+    weighLayers(density_, *scene);
     host.checkCancel();
     host.progress(0.5, "attaching the pleura");
     scene->anchors = findAnchors(*scene, reach_);
@@ -33,7 +34,7 @@ class TwoLayer final : public Stage {
 
  private:
   LayerSettings settings_;
-  double reach_ = 40;
+  double reach_ = 40, density_ = 1060;
 };
 
 }  // namespace

@@ -1,159 +1,18 @@
-#include "plugins/model/two_layer/anchors.h"
-#include "plugins/model/two_layer/layers.h"
+#include "tests/plugins/model/common/barrel.h"
 
-#include "kernel/stage/error.h"
-#include "kernel/value/motion.h"
+#include "plugins/model/two_layer/masses.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 using namespace pectora;
 
-namespace {
-
-constexpr double kSkin = 150, kPleura = 125;
-
-LayerSlice halfCircle(double radius, double z) {
-  LayerSlice slice{z, {}, false};
-  for (int i = 0; i <= 180; ++i) {
-    const double t = std::numbers::pi * i / 180;
-    slice.points.push_back({-radius * std::cos(t), -radius * std::sin(t), z});
-  }
-  return slice;
-}
-
-// A half cylinder with three rings for ribs and a plate for a sternum, 200 mm high.
-std::shared_ptr<RibCage> barrel() {
-  auto anatomy = std::make_shared<Anatomy>();
-  for (int z = 0; z <= 200; z += 2) {
-    anatomy->skin.push_back(halfCircle(kSkin, z));
-    anatomy->pleura.push_back(halfCircle(kPleura, z));
-  }
-  anatomy->sternum.contours = {{{-15, -132, 100}, {15, -132, 100}, {15, -126, 100}, {-15, -126, 100}}};
-  anatomy->sternum.jugularNotch = {0, -130, 180};
-  auto cage = std::make_shared<RibCage>();
-  cage->anatomy = anatomy;
-  for (int rib = 0; rib < 3; ++rib) {
-    Curve curve;
-    curve.knots = clampedKnots(4, 3);
-    const double z = 30 + 60 * rib;
-    curve.controls = {{-130, 0, z}, {-130, -175, z}, {130, -175, z}, {130, 0, z}};
-    cage->ribs.push_back({Side::right, rib + 4, curve, 0});
-  }
-  return cage;
-}
-
-Scene built(std::shared_ptr<const RibCage> cage, double spacing) {
-  Scene scene;
-  scene.cage = cage;
-  buildLayers({spacing, 20, 1060}, scene);
-  return scene;
-}
-
-}  // namespace
-
-TEST(Layers, LieOnSkinAndPleuraAtTheWantedSpacing) {
-  const Scene scene = built(barrel(), 8);
-  EXPECT_NEAR(scene.rowSpacing, 8, 0.5);
-  EXPECT_NEAR(scene.columnSpacing, 8, 0.5);
-  // Rays cross the wall of 25 mm squarely in the middle, and a little obliquely beside it.
-  EXPECT_GT(scene.thickness, kSkin - kPleura);
-  EXPECT_LT(scene.thickness, 1.1 * (kSkin - kPleura));
-  const int middle = scene.index(scene.rows / 2, scene.columns / 2);
-  EXPECT_NEAR(distance(scene.outer[middle], scene.inner[middle]), kSkin - kPleura, 0.1);
-  for (int i = 0; i < scene.points(); ++i) {
-    EXPECT_NEAR(std::hypot(scene.outer[i].x, scene.outer[i].y), kSkin, 0.05);
-    EXPECT_NEAR(std::hypot(scene.inner[i].x, scene.inner[i].y), kPleura, 0.05);
-  }
-  int first = 0;
-  EXPECT_EQ(countInvertedPrisms(scene.rows, scene.columns, scene.outer, scene.inner, first), 0);
-  EXPECT_LT(scene.outer.front().x, 0) << "column 0 is the patient's right";
-  EXPECT_LT(scene.outer.front().z, scene.outer.back().z) << "row 0 is the lowest";
-}
-
 TEST(Layers, WeighWhatTheWallWeighs) {
-  const Scene scene = built(barrel(), 8);
+  Scene scene = built(barrel(), 8);
+  weighLayers(1060, scene);
   double total = 0;
   for (int i = 0; i < scene.points(); ++i) total += scene.outerMass[i] + scene.innerMass[i];
   // Each point stands for a cell of the skin's grid, so the outer area counts.
   double volume = 0;
   for (int i = 0; i < scene.points(); ++i) volume += scene.rowSpacing * scene.columnSpacing * distance(scene.outer[i], scene.inner[i]);
   EXPECT_NEAR(total, 1060e-9 * volume, 1e-9 * total);
-}
-
-TEST(Layers, KeepToTheLongestRunOfWholeSkin) {
-  auto cage = std::make_shared<RibCage>(*barrel());
-  auto anatomy = std::make_shared<Anatomy>(*cage->anatomy);
-  for (std::size_t i = 60; i < 70; ++i) anatomy->skin[i].clipped = true;  // 120 to 138 mm
-  cage->anatomy = anatomy;
-  const Scene scene = built(cage, 8);
-  EXPECT_LE(scene.outer.back().z, 118.01);
-}
-
-TEST(Layers, AreRefusedWhereTooLittleIsInView) {
-  auto cage = std::make_shared<RibCage>(*barrel());
-  auto anatomy = std::make_shared<Anatomy>(*cage->anatomy);
-  for (LayerSlice& s : anatomy->skin) s.clipped = true;
-  cage->anatomy = anatomy;
-  EXPECT_THROW(built(cage, 8), Error);
-  anatomy = std::make_shared<Anatomy>();
-  cage->anatomy = anatomy;
-  EXPECT_THROW(built(cage, 8), Error);
-}
-
-TEST(Anchors, AreTheNearestPointsOfThreeDifferentBodies) {
-  const Scene scene = built(barrel(), 10);
-  const std::vector<Anchor> anchors = findAnchors(scene, 1000);
-  ASSERT_EQ(anchors.size(), 3u * scene.points() + 2 * (scene.rows + scene.columns) - 4);
-  for (int i = 0; i < scene.points(); ++i) {
-    const Anchor* three = &anchors[3 * i];
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(three[k].point, i);
-      for (int l = 0; l < k; ++l) EXPECT_TRUE(three[k].body != three[l].body || three[k].index != three[l].index);
-      if (three[k].body == BodyKind::rib) {
-        // No sample of the same rib is nearer than the anchor.
-        double best = INFINITY;
-        for (const Vec3& p : scene.cage->ribs[three[k].index].curve.sample(2000)) best = std::min(best, distance(p, scene.inner[i]));
-        if (best >= 5) {
-          // Samples 0.3 mm apart see a distance of 5 mm by 0.15^2 / 10 too large at most.
-          EXPECT_NEAR(distance(three[k].rest, scene.inner[i]), best, 0.003);
-        } else {
-          EXPECT_EQ(three[k].rest, scene.inner[i]) << "glued to what touches it";
-        }
-      }
-    }
-    EXPECT_LE(distance(three[0].rest, scene.inner[i]), distance(three[2].rest, scene.inner[i]) + 1e-9);
-  }
-}
-
-TEST(Anchors, HoldInPlaceWhatLiesTooFarFromEveryBody) {
-  const Scene scene = built(barrel(), 10);
-  const std::vector<Anchor> anchors = findAnchors(scene, 20);
-  std::vector<int> perPoint(scene.points());
-  int still = 0;
-  for (const Anchor& a : anchors) {
-    if (a.isOnSkin) continue;
-    ++perPoint[a.point];
-    if (a.body != BodyKind::still) continue;
-    ++still;
-    EXPECT_EQ(a.rest, scene.inner[a.point]);
-  }
-  EXPECT_GT(still, 0);
-  for (int count : perPoint) EXPECT_TRUE(count == 1 || count == 3);
-}
-
-TEST(Anchors, HoldTheSkinAtTheEdgeOfTheModel) {
-  const Scene scene = built(barrel(), 10);
-  int held = 0;
-  for (const Anchor& a : findAnchors(scene, 40)) {
-    if (!a.isOnSkin) continue;
-    ++held;
-    const int r = a.point / scene.columns, c = a.point % scene.columns;
-    EXPECT_TRUE(r == 0 || r == scene.rows - 1 || c == 0 || c == scene.columns - 1);
-    EXPECT_EQ(a.rest, scene.outer[a.point]);
-    EXPECT_EQ(a.body, BodyKind::still);
-  }
-  EXPECT_EQ(held, 2 * (scene.rows + scene.columns) - 4);
 }

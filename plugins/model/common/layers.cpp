@@ -1,4 +1,4 @@
-#include "plugins/model/two_layer/layers.h"
+#include "plugins/model/common/layers.h"
 
 #include "kernel/stage/error.h"
 
@@ -57,6 +57,11 @@ std::vector<Vec3> levelAt(const std::vector<LayerSlice>& layer, double z, int co
 
 }  // namespace
 
+void LayerSettings::describe(Visitor& v) {
+  v.real("spacing", spacing, "mm", {1, 50}, {4, 12}, "Distance between neighbouring skin points");
+  v.real("margin", margin, "mm", {0, 200}, {0, 60}, "How far the model reaches above the sternum and below the ribs");
+}
+
 void buildLayers(const LayerSettings& settings, Scene& scene) {
   const Anatomy& anatomy = *scene.cage->anatomy;
   const auto [low, high] = cageExtent(*scene.cage, settings.margin);
@@ -112,13 +117,6 @@ void buildLayers(const LayerSettings& settings, Scene& scene) {
   scene.rowSpacing = rowSum / ((scene.rows - 1) * scene.columns);
   scene.columnSpacing = columnSum / (scene.rows * (scene.columns - 1));
   scene.thickness = thicknessSum / frontPoints;
-
-  // Each layer carries half of the wall: density * cell * thickness / 2, mm^3 to m^3.
-  for (int i = 0; i < scene.points(); ++i) {
-    const double volume = scene.rowSpacing * scene.columnSpacing * distance(scene.outer[i], scene.inner[i]);
-    scene.outerMass.push_back(0.5e-9 * settings.density * volume);
-    scene.innerMass.push_back(0.5e-9 * settings.density * volume);
-  }
 }
 
 }  // namespace pectora

@@ -1,4 +1,4 @@
-#include "plugins/model/two_layer/anchors.h"
+#include "plugins/model/common/anchors.h"
 
 #include "kernel/physics/workers.h"
 
