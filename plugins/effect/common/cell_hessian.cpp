@@ -52,6 +52,26 @@ void CellHessian::multiply(const NodeVectors& v, NodeVectors& y) const {
   });
 }
 
+void CellHessian::multiplySingle(const SingleVectors& v, SingleVectors& y) const {
+  NodeVectors in(v.size()), out(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) in.set(i, v[i]);
+  multiply(in, out);
+  for (std::size_t i = 0; i < v.size(); ++i) y.set(i, y[i] + out[i]);
+}
+
+void CellHessian::forEachCoupling(const Coupling& visit) const {
+  const std::size_t columns = grid_.columns();
+  for (int l = 0; l < grid_.layers(); ++l)
+    for (int r = 0; r < grid_.rows(); ++r)
+      forEachNeighbour(l, r, [&](int first, std::size_t count, const float* entries, int farLayer, int farRow, int farColumn) {
+        for (std::size_t i = 0; i < count; ++i) {
+          Matrix3 block;
+          for (std::size_t e = 0; e < 9; ++e) block.m[e / 3][e % 3] = double(entries[e * columns + i]);
+          visit(grid_.node(l, r, first) + i, grid_.node(farLayer, farRow, farColumn) + i, block);
+        }
+      });
+}
+
 void CellHessian::addDiagonal(std::vector<Symmetric3>& blocks) const {
   const std::size_t columns = grid_.columns();
   for (int l = 0; l < grid_.layers(); ++l)
