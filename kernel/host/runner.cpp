@@ -48,6 +48,7 @@ class StageHost final : public Host {
     messages_.warn(stage_, message);
   }
   void info(const std::string& message) override { messages_.info(stage_, message); }
+  void preview(const NodeVectors& positions) override { messages_.preview(positions); }
   std::string pluginFolder() const override { return folder_; }
   std::vector<std::string> takeWarnings() { return std::move(warnings_); }
 

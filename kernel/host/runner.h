@@ -22,6 +22,8 @@ class Messages {
   virtual void finished(const Record& /*record*/, bool /*cached*/) {}
   /// What it returned, one handle an output.
   virtual void made(const std::vector<Handle>& /*outputs*/) {}
+  /// Where a running solver's nodes are (Host::preview).
+  virtual void preview(const NodeVectors& /*positions*/) {}
 };
 
 /// What `pectora explain` tells of one solve.

@@ -31,6 +31,7 @@ struct Motion : Value {
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
+  std::size_t bytes() const override { return (outer.size() + inner.size() + anchors.size()) * sizeof(Vec3); }
   /// `before` and `after`: the skin as meshes; `after` has the field "displacement".
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };
