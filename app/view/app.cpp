@@ -93,7 +93,9 @@ void App::frame() {
   if (isOpen) splitter("##split.right", width - right - gap, top, middle, layout.right, -1);
 
   ImGui::Render();
-  if (ImGui::IsAnyItemActive() || io.MouseWheel != 0) settling_ = std::max(settling_, 2);
+  // What input changed shows fully in the next frame or the one after.
+  const bool hasKeys = std::any_of(std::begin(io.KeysDown), std::end(io.KeysDown), [](bool isDown) { return isDown; });
+  if (ImGui::IsAnyMouseDown() || ImGui::IsMouseReleased(0) || io.MouseWheel != 0 || hasKeys) settling_ = std::max(settling_, 2);
   target_.end();
 
   if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));

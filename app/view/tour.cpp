@@ -42,6 +42,8 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   hand.click("scene", 0.5f, 0.45f);
   picture("tissue");
   hand.click("tab.anatomy");
+  hand.frames(3);
+  hand.click("window.Bone");
   picture("anatomy");
   hand.click("tab.compare");
   picture("compare");

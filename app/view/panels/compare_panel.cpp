@@ -67,7 +67,7 @@ std::pair<Vec3, double> boundsOf(const Surface& s) {
   Vec3 low = s.points.front(), high = low;
   for (const Vec3& p : s.points)
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  return {(low + high) * 0.5, 0.55 * std::max(high.z - low.z, high.x - low.x)};
+  return {(low + high) * 0.5, 0.5 * std::max(high.z - low.z, high.x - low.x)};
 }
 
 }  // namespace
@@ -88,12 +88,9 @@ void ComparePanel::load(Context& context) {
     OneSide& s = sides_[side];
     const std::shared_ptr<const void> map = side == 1 ? r.byLandmarks.value : nullptr;
     if (s.of == values[side] && s.mapOf == map) continue;
-    const bool isNew = s.of != values[side];
+    s.isFramed = s.isFramed && s.of == values[side];
     s.of = values[side], s.mapOf = map;
     show(context, s, values[side].get());
-    if (!isNew || s.shown.points.empty()) continue;
-    const auto [center, radius] = boundsOf(s.shown);
-    s.viewport.camera.frame(center, radius);
   }
 }
 
@@ -134,6 +131,11 @@ void ComparePanel::drawSide(Context& context, int side, ImVec2 size) {
   }
   const ViewportInput input = s.viewport.item(kSides[side], size, false);
   mark(side == 0 ? "landmarks.ct" : "landmarks.scan");
+  if (!s.isFramed && !s.shown.points.empty()) {
+    const auto [center, radius] = boundsOf(s.shown);
+    s.viewport.camera.frame(center, radius);
+    s.isFramed = true;
+  }
   if (input.isClicked)
     if (const auto hit = pick(s.shown, s.viewport.camera.ray(input.at.x, input.at.y))) {
       const Vec3 position = s.fromShown(hit->position);

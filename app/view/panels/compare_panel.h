@@ -24,6 +24,7 @@ class ComparePanel {
     Viewport viewport;
     std::shared_ptr<const void> of, mapOf;
     std::uint64_t version = 0;
+    bool isFramed = false;               // the camera was set for it
     std::vector<Vec3> marked;
   };
   void load(Context& context);

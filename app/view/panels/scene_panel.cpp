@@ -180,7 +180,7 @@ void ScenePanel::overlays(Context& context) {
   }
 
   // What the picked point tells.
-  if (context.picked && std::size_t(context.picked->point) < parts_.skin().points.size()) {
+  if (context.picked && context.scene.skin != SkinLook::hidden && std::size_t(context.picked->point) < parts_.skin().points.size()) {
     const int point = context.picked->point;
     const Scene* scene = context.results->sceneValue();
     ImVec2 at;
@@ -261,7 +261,7 @@ int ScenePanel::turntable(const Context& context, const std::string& folder, int
   camera.pitch = 0.12;
   for (int i = 0; i < pictures; ++i) {
     camera.yaw = 2 * kPi * i / pictures;
-    renderer_.draw(frame, camera, parts_.items(context), context.scene.clip, 2.2f);
+    renderer_.draw(frame, camera, parts_.items(context), context.scene.clip, 3.2f);
     writePng(fmt::format("{}/turn_{:03}.png", folder, i), width, height, readPixels(frame.framebuffer(), width, height));
   }
   return pictures;

@@ -27,6 +27,12 @@ unsigned compileShader(unsigned kind, const char* source) {
 
 int liveGpuObjects() { return live; }
 
+int openGlErrors() {
+  int count = 0;
+  while (glGetError() != GL_NO_ERROR) ++count;
+  return count;
+}
+
 GpuObject::GpuObject(GpuKind kind) : kind_(kind) {
   switch (kind_) {
     case GpuKind::buffer: glGenBuffers(1, &id_); break;

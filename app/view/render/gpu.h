@@ -11,6 +11,9 @@ namespace pectora::view {
 /// How many OpenGL objects the window holds at present, ImGui's own left aside.
 int liveGpuObjects();
 
+/// How many errors OpenGL has noted since the last call.
+int openGlErrors();
+
 enum class GpuKind { buffer, vertexArray, texture, framebuffer, renderbuffer, program };
 
 /// One OpenGL object, made by its constructor and deleted by its destructor.

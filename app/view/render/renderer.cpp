@@ -55,19 +55,6 @@ void main() {
   shade = isGlass == 1 ? vec4(lit + 0.1, 0.16 + 0.55 * rim * rim) : vec4(lit, 1.0);
 })";
 
-constexpr const char* kBackgroundVertex = R"(#version 330 core
-out float height;
-void main() {
-  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  height = 0.5 + 0.5 * corner.y;
-  gl_Position = vec4(corner, 1, 1);
-})";
-
-constexpr const char* kBackgroundFragment = R"(#version 330 core
-in float height;
-out vec4 shade;
-void main() { shade = vec4(mix(vec3(0.118, 0.133, 0.153), vec3(0.192, 0.216, 0.243), height), 1); })";
-
 }  // namespace
 
 void GpuSurface::upload(const Surface& surface) {
@@ -98,7 +85,7 @@ void GpuSurface::upload(const Surface& surface) {
   glBindVertexArray(0);
 }
 
-Renderer::Renderer() : surfaces_(kSurfaceVertex, kSurfaceFragment), background_(kBackgroundVertex, kBackgroundFragment) {}
+Renderer::Renderer() : surfaces_(kSurfaceVertex, kSurfaceFragment) {}
 
 void Renderer::drawItem(const Item& item) const {
   const Look& look = item.look;
@@ -118,12 +105,9 @@ void Renderer::draw(const Frame& frame, const Camera& camera, const std::vector<
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  background_.use();
-  glBindVertexArray(empty_.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glClearColor(0.165f, 0.185f, 0.208f, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);

@@ -49,8 +49,7 @@ class Renderer {
 
  private:
   void drawItem(const Item& item) const;
-  Program surfaces_, background_;
-  GpuObject empty_{GpuKind::vertexArray};
+  Program surfaces_;
 };
 
 }  // namespace pectora::view

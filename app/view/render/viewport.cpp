@@ -32,7 +32,7 @@ void Viewport::draw(const Renderer& renderer, const std::vector<Item>& items, co
   const bool isNew = version != drawnVersion_ || matrix != drawnMatrix_ || size_.x != drawnSize_.x || size_.y != drawnSize_.y;
   if (isNew || isCoarse_) {
     frame_.resize(int(size_.x), int(size_.y), isNew ? 1 : 4);
-    renderer.draw(frame_, camera, items, clip, 2.2f * scale);
+    renderer.draw(frame_, camera, items, clip, 3.2f * scale);
     drawnVersion_ = version, drawnMatrix_ = matrix, drawnSize_ = size_;
     isCoarse_ = isNew;
   }
