@@ -34,6 +34,7 @@ class Offscreen final : public Target {
     }
     frame_ = std::make_unique<Frame>();
     frame_->resize(width, height, 1);
+    for (int key = 0; key < ImGuiKey_COUNT; ++key) ImGui::GetIO().KeyMap[key] = key;   // there is no keyboard but the hand's
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
   ~Offscreen() override {

@@ -15,12 +15,12 @@ double largestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return largest;
 }
 
-struct Session {
+struct Desk {
   Registry registry{{PECTORA_PLUGINS}};
   Worker worker{registry, [] {}};
   Choices choices = initialChoices({"solver.newton"});
 
-  Session() {
+  Desk() {
     choices.source = Source::phantom;
     choices.loader = {"loader.phantom", {{"matrix", 128.0}, {"slice_spacing", 5.0}}};
     assign(choices.model.settings, "spacing", 14.0);
@@ -40,7 +40,7 @@ struct Session {
 }  // namespace
 
 TEST(Pipeline, GoesAllTheWayToAComparisonWithThePhantomsScan) {
-  Session s;
+  Desk s;
   const auto r = s.after(s.choices);
   EXPECT_EQ(r->error, "");
   ASSERT_TRUE(r->motionValue());
@@ -51,7 +51,7 @@ TEST(Pipeline, GoesAllTheWayToAComparisonWithThePhantomsScan) {
 }
 
 TEST(Pipeline, LiveSkinEndsAsTheScriptsDoes) {
-  Session s;
+  Desk s;
   s.after(s.choices);
   assign(s.choices.planner.settings, "lift", 18.0);
   const auto live = s.after(s.choices, true);
@@ -67,7 +67,7 @@ TEST(Pipeline, LiveSkinEndsAsTheScriptsDoes) {
 }
 
 TEST(Pipeline, GoesOnFromTheSkinWhenASpringConstantChanges) {
-  Session s;
+  Desk s;
   const auto before = s.after(s.choices);
   assign(s.choices.effects[4].plugin.settings, "youngs_modulus", 20.0);
   const auto after = s.after(s.choices, true);
@@ -77,7 +77,7 @@ TEST(Pipeline, GoesOnFromTheSkinWhenASpringConstantChanges) {
 }
 
 TEST(Pipeline, TellsAnErrorKeepsWhatWasThereAndRecovers) {
-  Session s;
+  Desk s;
   s.after(s.choices);
   Choices wrong = s.choices;
   for (EffectChoice& effect : wrong.effects) effect.isOn = false;
@@ -90,7 +90,7 @@ TEST(Pipeline, TellsAnErrorKeepsWhatWasThereAndRecovers) {
 }
 
 TEST(Pipeline, StopsAtOnceWhenCancelledAndGoesOnWhenAsked) {
-  Session s;
+  Desk s;
   assign(s.choices.loader.settings, "matrix", 512.0);
   s.worker.want(s.choices, false);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
@@ -102,7 +102,7 @@ TEST(Pipeline, StopsAtOnceWhenCancelledAndGoesOnWhenAsked) {
 }
 
 TEST(Pipeline, TellsTheSpringsOfAPointInBalance) {
-  Session s;
+  Desk s;
   const auto r = s.after(s.choices);
   std::vector<PickedSpring> springs;
   const int point = r->sceneValue()->index(r->sceneValue()->rows / 2, r->sceneValue()->columns / 2);
@@ -120,7 +120,7 @@ TEST(Pipeline, TellsTheSpringsOfAPointInBalance) {
 }
 
 TEST(Pipeline, MeasuresWhatEachEffectChanges) {
-  Session s;
+  Desk s;
   s.after(s.choices);
   std::vector<EffectWorth> worths;
   s.worker.run("effects", [&](Pipeline& pipeline) { worths = pipeline.measureEffects([](double, const std::string&) {}); });
@@ -132,7 +132,7 @@ TEST(Pipeline, MeasuresWhatEachEffectChanges) {
 }
 
 TEST(Pipeline, ConsoleSeesTheResultsAndPresetsComeBack) {
-  Session s;
+  Desk s;
   s.after(s.choices);
   s.worker.takeLog();
   s.worker.run("console", [](Pipeline& pipeline) { pipeline.evaluate("motion.status, plan.lift"); });
@@ -158,7 +158,7 @@ TEST(Pipeline, ConsoleSeesTheResultsAndPresetsComeBack) {
 }
 
 TEST(Pipeline, ExportsWhatScriptsExport) {
-  Session s;
+  Desk s;
   s.after(s.choices);
   const std::filesystem::path folder = freshFolder("export");
   s.worker.run("export", [&](Pipeline& pipeline) { pipeline.exportTo(folder.string()); });
