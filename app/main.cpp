@@ -3,6 +3,9 @@
 // Exit codes: 0 done; 1 the run failed; 2 bad usage or bad input; 3 cancelled.
 #include "app/console.h"
 #include "app/listing.h"
+#ifdef PECTORA_VIEW
+#include "app/view/view.h"
+#endif
 
 #include "kernel/physics/workers.h"
 #include "kernel/script/engine.h"
@@ -57,6 +60,9 @@ struct Options {
   std::vector<std::string> arguments;
   int threadCount = 0;
   bool quiet = false, json = false, scriptHelp = false;
+#ifdef PECTORA_VIEW
+  view::ViewOptions window;
+#endif
 };
 
 // NAME=VALUE words, with --out as out=DIR.
@@ -116,7 +122,14 @@ int command(const CLI::App& app, const Options& options, Console& console) {
       for (const Explanation& e : explanations) writeOut(explanationText(e));
     }
   } else {
+#ifdef PECTORA_VIEW
+    // The window has a button to cancel; an interrupt ends it.
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    view::runView(registry, options.window);
+#else
     throw Error("the tool window is not built into this program").advise("Scripts do all that it would: pectora run scripts/correction.lua");
+#endif
   }
   return 0;
 }
@@ -154,7 +167,15 @@ int main(int argc, char** argv) {
   explain->add_option("NAME=VALUE", options.arguments, "The script's parameters");
   explain->add_option("--out", options.out, "Folder for results (the script's parameter out)");
   common(explain);
-  app.add_subcommand("view", "Open the tool window");
+  CLI::App* view = app.add_subcommand("view", "Open the tool window");
+#ifdef PECTORA_VIEW
+  view->add_option("PATH", options.window.path, "What to open: a folder of DICOM files, a scan or a preset");
+  view->add_option("--tour", options.window.tour, "Write pictures of a tour through the window into this folder, and open none");
+  view->add_option("--scale", options.window.scale, "Size of text and panels (default: as the display says)")->check(CLI::Range(0.5, 4.0));
+  view->add_option("--width", options.window.width, "Width in pixels")->check(CLI::Range(960, 10000));
+  view->add_option("--height", options.window.height, "Height in pixels")->check(CLI::Range(600, 10000));
+#endif
+  common(view);
 
   try {
     app.parse(argc, argv);

@@ -1,6 +1,7 @@
 #include "kernel/host/runner.h"
 
 #include "kernel/host/hash.h"
+#include "kernel/host/warm.h"
 #include "kernel/stage/effect.h"
 #include "kernel/stage/solver.h"
 
@@ -47,6 +48,7 @@ class StageHost final : public Host {
     messages_.warn(stage_, message);
   }
   void info(const std::string& message) override { messages_.info(stage_, message); }
+  void preview(const NodeVectors& positions) override { messages_.preview(positions); }
   std::string pluginFolder() const override { return folder_; }
   std::vector<std::string> takeWarnings() { return std::move(warnings_); }
 
@@ -57,16 +59,6 @@ class StageHost final : public Host {
   std::mutex mutex_;
   std::vector<std::string> warnings_;
 };
-
-// Refuses the first effect that cannot give what the solver uses.
-void checkNeeds(const std::string& solver, const Needs& needs, const std::vector<EffectUse>& effects) {
-  for (const EffectUse& use : effects) {
-    const char* missing = needs.hessian && !use.hasHessian ? "a Hessian" : needs.springs && !use.hasSprings ? "springs alone" : nullptr;
-    if (!missing) continue;
-    throw Error(fmt::format("{} works only with effects that offer {}, and {} does not", solver, missing, use.id))
-        .of("scene").advise(fmt::format("Take a solver that uses gradients alone, such as solver.verlet or solver.lbfgs, or leave {} out of the scene", use.id));
-  }
-}
 
 // Settings as the record shows them: read paths as hashes, written paths not at all.
 std::vector<std::pair<std::string, std::string>> recordSettings(const std::vector<Parameter>& parameters) {
@@ -201,10 +193,11 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
       return {{call, record}};
     }
     const bool cacheable = descriptor.isCacheable;
-    if (cacheable && !(solver && explanations)) {
+    if (cacheable && !(descriptor.makeSolver && explanations)) {
       if (std::vector<Handle> cached = fromCache(record->key); !cached.empty()) {
         for (const std::string& warning : cached.front().record->warnings) messages_.warn(id, warning);
         messages_.finished(*cached.front().record, true);
+        messages_.made(cached);
         return cached;
       }
     }
@@ -218,7 +211,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
       if (outputs.size() != descriptor.outputs.size())
         throw std::logic_error(fmt::format("returned {} values instead of {}", outputs.size(), descriptor.outputs.size()));
     } else {
-      outputs = {solve(plugin, *solver, inputs, accept, host)};
+      outputs = {solve(plugin, std::move(solver), inputs, accept, host)};
     }
     record->seconds = secondsSince(start);
     record->peakMegabytes = peakMegabytes();
@@ -227,6 +220,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
     std::vector<Handle> handles;
     for (auto& output : outputs) handles.push_back({std::move(output), record});
     if (cacheable) keep(record->key, handles);
+    messages_.made(handles);
     return handles;
   } catch (Error& error) {
     throw error.inStage(id);
@@ -241,63 +235,17 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
   }
 }
 
-std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, Solver& solver, const PortInputs& inputs, bool accept,
+std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept,
                                             Host& host) {
   const auto scene = std::dynamic_pointer_cast<const Scene>(inputs[0].front().value);
   const auto plan = std::dynamic_pointer_cast<const Plan>(inputs[1].front().value);
-  const Compiled compiled = compile(*scene, registry_);
-  for (const EffectUse& use : compiled.effects)
-    if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
-  checkNeeds(plugin.descriptor->id, solver.needs(), compiled.effects);
+  WarmSolve warm(scene, plugin.descriptor->id, std::move(solver), registry_, host);
   if (explanations) {
-    explain(plugin, compiled, *scene);
+    explain(plugin, warm.compiled(), *scene);
     throw Explained();
   }
-
-  // Begin at rest, or where an earlier motion of the same scene ended.
-  const System& system = *compiled.system;
-  NodeVectors start;
-  if (!inputs[2].empty()) {
-    const auto from = std::dynamic_pointer_cast<const Motion>(inputs[2].front().value);
-    const auto counts = [](std::size_t layers, std::size_t points, std::size_t anchors) {
-      return fmt::format("{} layers of {} points, {} anchors", layers, points, anchors);
-    };
-    const std::string given = counts(from->between.size() + 2, from->outer.size(), from->anchors.size());
-    const std::string allowed = counts(scene->between.size() + 2, system.points(), scene->anchors.size());
-    if (given != allowed) throw Error("the motion to start from belongs to another scene").of("start").given(given).allowed(allowed);
-    start = NodeVectors(system.rest.size());
-    for (int l = 0; l < system.layers; ++l)
-      for (std::size_t i = 0; i < system.points(); ++i) start.set(system.node(l, i), from->layer(l)[i]);
-    for (std::size_t j = 0; j < from->anchors.size(); ++j) start.set(system.anchorNode(j), from->anchors[j]);
-  }
-  const auto session = solver.prepare(system, host);
-  const Drive drive = makeDrive(*scene, *plan);
-  Solution solution = session->solve(drive, start.size() ? &start : nullptr, host);
-
-  auto motion = std::make_shared<Motion>();
-  motion->scene = scene;
-  const auto layerOf = [&](int l) {
-    std::vector<Vec3> layer;
-    for (std::size_t i = 0; i < system.points(); ++i) layer.push_back(solution.positions[system.node(l, i)]);
-    return layer;
-  };
-  motion->outer = layerOf(0);
-  for (int l = 1; l + 1 < system.layers; ++l) motion->between.push_back(layerOf(l));
-  motion->inner = layerOf(system.layers - 1);
-  motion->anchors = drive.frames.back();
-  motion->status = solution.status;
-  motion->message = std::move(solution.message);
-  motion->iterations = solution.iterations;
-  motion->forceEvaluations = solution.forceEvaluations;
-  motion->residual = solution.residual;
-  motion->relativeResidual = solution.relativeResidual;
-  motion->energy = solution.energy;
-  motion->energyHistory = std::move(solution.energyHistory);
-  for (int l = 0; l + 1 < system.layers; ++l) {
-    int first = -1;
-    motion->invertedPrisms += countInvertedPrisms(scene->rows, scene->columns, motion->layer(l), motion->layer(l + 1), first);
-    if (motion->invertedAt < 0) motion->invertedAt = first;
-  }
+  if (!inputs[2].empty()) warm.startFrom(*std::dynamic_pointer_cast<const Motion>(inputs[2].front().value));
+  const std::shared_ptr<const Motion> motion = warm.solve(*plan, host);
 
   if (motion->invertedPrisms > 0)
     host.warn(fmt::format("{} cells between skin and pleura turned inside out, the first at row {}, column {}",

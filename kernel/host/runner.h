@@ -20,6 +20,10 @@ class Messages {
   virtual void warn(const std::string& /*stage*/, const std::string& /*message*/) {}
   /// A stage ended; `cached` says that the result came from the cache.
   virtual void finished(const Record& /*record*/, bool /*cached*/) {}
+  /// What it returned, one handle an output.
+  virtual void made(const std::vector<Handle>& /*outputs*/) {}
+  /// Where a running solver's nodes are (Host::preview).
+  virtual void preview(const NodeVectors& /*positions*/) {}
 };
 
 /// What `pectora explain` tells of one solve.
@@ -64,7 +68,7 @@ class Runner {
   void checkInputs(const Plugin& plugin, const PortInputs& inputs) const;
   std::vector<Handle> fromCache(const std::string& key);
   void keep(const std::string& key, const std::vector<Handle>& handles);
-  std::shared_ptr<const Motion> solve(const Plugin& plugin, Solver& solver, const PortInputs& inputs, bool accept, Host& host);
+  std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host);
   void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene);
 
   Registry& registry_;

@@ -2,6 +2,7 @@
 
 #include "kernel/script/state.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -52,27 +53,44 @@ void openState(ScriptState& state) {
   script::openBindings(state.lua);
 }
 
-// Every run has a fresh state: nothing of one script is seen by the next.
-void execute(ScriptState& state, const std::string& path) {
+// A fresh state: nothing of one script is seen by the next.
+void renewState(ScriptState& state) {
   if (state.lua) lua_close(state.lua), state.lua = nullptr;
   state.stop = nullptr;
   state.declared.clear();
   state.hasDeclared = false;
-  state.scriptFolder = std::filesystem::path(path).parent_path().string();
-  if (state.scriptFolder.empty()) state.scriptFolder = ".";
-  const std::string code = readScript(path);
-  const std::string name = std::filesystem::path(path).filename().string();
-
   openState(state);
+}
+
+// Calls the function on the stack, or throws the error that a load left there. The message handler lies at index 1.
+void call(ScriptState& state, int loaded, int arguments, int results) {
   lua_State* lua = state.lua;
-  lua_pushcfunction(lua, messageHandler);
-  int result = luaL_loadbufferx(lua, code.data(), code.size(), ("=" + name).c_str(), "t");
-  if (result == LUA_OK) result = lua_pcall(lua, 0, 0, 1);
+  if (loaded == LUA_OK) loaded = lua_pcall(lua, arguments, results, 1);
   if (state.stop) std::rethrow_exception(state.stop);
-  if (result == LUA_OK) return;
+  if (loaded == LUA_OK) return;
   if (const Error* error = script::toError(lua, -1)) throw Error(*error);
   const char* text = lua_tostring(lua, -1);
   throw Error(text ? text : "the script failed with an error that is no text");
+}
+
+void execute(ScriptState& state, const std::string& path) {
+  const std::string code = readScript(path);
+  const std::string name = std::filesystem::path(path).filename().string();
+  state.scriptFolder = std::filesystem::path(path).parent_path().string();
+  if (state.scriptFolder.empty()) state.scriptFolder = ".";
+  renewState(state);
+  lua_pushcfunction(state.lua, messageHandler);
+  call(state, luaL_loadbufferx(state.lua, code.data(), code.size(), ("=" + name).c_str(), "t"), 0, 0);
+}
+
+// Pushes a global of the last script, past the rule that an unknown one is an error.
+bool pushGlobal(ScriptState& state, const std::string& name) {
+  if (!state.lua) return false;
+  lua_settop(state.lua, 0);
+  lua_pushglobaltable(state.lua);
+  lua_pushstring(state.lua, name.c_str());
+  lua_rawget(state.lua, -2);
+  return true;
 }
 
 }  // namespace
@@ -100,6 +118,73 @@ void ScriptEngine::run(const std::string& path, const std::vector<std::pair<std:
   execute(*state_, path);
   if (!state_->hasDeclared && !arguments.empty())
     throw Error("the script takes no parameters").given(arguments.front().first);
+}
+
+void ScriptEngine::evaluate(const std::string& code) {
+  if (!state_->lua) renewState(*state_);
+  lua_State* lua = state_->lua;
+  lua_settop(lua, 0);
+  script::armStop(lua);
+  state_->onlyParameters = false;
+  lua_pushcfunction(lua, messageHandler);
+  // As an expression where it is one.
+  const std::string expression = "return " + code;
+  int loaded = luaL_loadbufferx(lua, expression.data(), expression.size(), "=console", "t");
+  if (loaded != LUA_OK) {
+    lua_pop(lua, 1);
+    loaded = luaL_loadbufferx(lua, code.data(), code.size(), "=console", "t");
+  }
+  call(*state_, loaded, 0, LUA_MULTRET);
+  const int results = lua_gettop(lua) - 1;
+  if (results == 0) return;
+  lua_getglobal(lua, "print");
+  lua_insert(lua, 2);
+  call(*state_, LUA_OK, results, 0);
+}
+
+void ScriptEngine::define(const std::string& name, const Handle& handle) {
+  if (!state_->lua) renewState(*state_);
+  script::pushHandle(state_->lua, handle);
+  lua_setglobal(state_->lua, name.c_str());
+}
+
+std::vector<Handle> ScriptEngine::handles(const std::string& name) const {
+  std::vector<Handle> found;
+  if (!pushGlobal(*state_, name)) return found;
+  lua_State* lua = state_->lua;
+  if (lua_istable(lua, -1))
+    for (lua_Integer i = 1; lua_rawgeti(lua, -1, i) != LUA_TNIL; ++i) {
+      if (const Handle* handle = script::toHandle(lua, -1)) found.push_back(*handle);
+      lua_pop(lua, 1);
+    }
+  lua_settop(lua, 0);
+  return found;
+}
+
+Settings ScriptEngine::settings(const std::string& name) const {
+  Settings found;
+  if (!pushGlobal(*state_, name)) return found;
+  lua_State* lua = state_->lua;
+  if (lua_istable(lua, -1)) {
+    lua_pushnil(lua);
+    while (lua_next(lua, -2)) {
+      if (lua_type(lua, -2) == LUA_TSTRING) {
+        const std::string key = lua_tostring(lua, -2);
+        found.emplace_back(key, script::toSetting(lua, -1, key));
+      }
+      lua_pop(lua, 1);
+    }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  }
+  lua_settop(lua, 0);
+  return found;
+}
+
+std::string ScriptEngine::text(const std::string& name) const {
+  if (!pushGlobal(*state_, name)) return "";
+  const std::string found = lua_type(state_->lua, -1) == LUA_TSTRING ? lua_tostring(state_->lua, -1) : "";
+  lua_settop(state_->lua, 0);
+  return found;
 }
 
 }  // namespace pectora

@@ -29,6 +29,15 @@ class ScriptEngine {
   /// Runs a script with NAME=VALUE arguments, checked against its declared parameters.
   /// Throws Error, Cancelled or Explained.
   void run(const std::string& path, const std::vector<std::pair<std::string, std::string>>& arguments);
+  /// Runs a piece of text in a state that lasts until the next script; an expression's value is printed. Throws as run does.
+  void evaluate(const std::string& code);
+  /// A global of that state.
+  void define(const std::string& name, const Handle& handle);
+  /// Globals of that state: a list of values that stages returned, a table of plain values by name, a text. Empty if there is
+  /// none, or something else.
+  std::vector<Handle> handles(const std::string& name) const;
+  Settings settings(const std::string& name) const;
+  std::string text(const std::string& name) const;
 
  private:
   std::unique_ptr<State> state_;

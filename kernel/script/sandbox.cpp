@@ -32,6 +32,11 @@ void raiseStop(lua_State* lua) {
   std::terminate();  // luaL_error does not return
 }
 
+void armStop(lua_State* lua) {
+  ScriptState::of(lua).stop = nullptr;
+  lua_sethook(lua, stopHook, LUA_MASKCOUNT, 1000);
+}
+
 std::string callerLine(lua_State* lua) {
   lua_Debug info;
   for (int level = 0; lua_getstack(lua, level, &info); ++level) {
@@ -68,7 +73,7 @@ void openSandbox(lua_State* lua) {
   lua_pushinteger(lua, 1);
   lua_call(lua, 1, 0);
   lua_pop(lua, 1);
-  lua_sethook(lua, stopHook, LUA_MASKCOUNT, 1000);
+  armStop(lua);
 }
 
 }  // namespace pectora::script

@@ -40,6 +40,8 @@ namespace script {
 
 /// Opens the allowed libraries and removes what a script must not have.
 void openSandbox(lua_State* lua);
+/// Lets the next piece of a script run, looking for cancel as it goes.
+void armStop(lua_State* lua);
 /// Stops the script for good with the exception now held in State::stop.
 [[noreturn]] void raiseStop(lua_State* lua);
 /// "correction.lua:31" of the Lua function that called the running C function.

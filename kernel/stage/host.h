@@ -5,6 +5,8 @@
 
 namespace pectora {
 
+struct NodeVectors;
+
 class Host {
  public:
   virtual ~Host() = default;
@@ -15,6 +17,8 @@ class Host {
   virtual void warn(const std::string& message) = 0;
   /// A detail for the log.
   virtual void info(const std::string& message) = 0;
+  /// A solver shows where its nodes are on the way, finite and every 100 ms of work or more often: a window draws them.
+  virtual void preview(const NodeVectors& /*positions*/) {}
   /// The folder in which the running plugin's file lies (for helper programs beside it).
   virtual std::string pluginFolder() const = 0;
 

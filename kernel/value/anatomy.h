@@ -55,6 +55,7 @@ struct LevelMetrics {
   double transverse = 0;          ///< T, inner width of the chest, mm
   double sternumToVertebra = 0;   ///< B, mm
   double deepestInnerWall = 0;    ///< C, front of the vertebra to the most anterior inner wall, mm
+  double depression() const { return deepestInnerWall - sternumToVertebra; }   ///< of the sternum behind that wall, mm
   double haller() const { return transverse / sternumToVertebra; }
   double correctionIndex() const { return 100 * (deepestInnerWall - sternumToVertebra) / deepestInnerWall; }
 };

@@ -34,6 +34,7 @@ struct Motion : Value {
   std::vector<Fact> facts() const override;
   /// As Scene::layer.
   const std::vector<Vec3>& layer(int l) const { return l == 0 ? outer : l == int(between.size()) + 1 ? inner : between[l - 1]; }
+  std::size_t bytes() const override { return ((2 + between.size()) * outer.size() + anchors.size()) * sizeof(Vec3); }
   /// `before` and `after`: the skin as meshes; `after` has the field "displacement".
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };

@@ -1,7 +1,10 @@
 #include "kernel/value/plan.h"
 
+#include "kernel/value/indices.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace pectora {
@@ -111,6 +114,8 @@ std::vector<Fact> Plan::facts() const {
   if (!frames.empty())
     for (const MovedCartilage& c : frames.back())
       if (std::abs(c.strain) > std::abs(worst)) worst = c.strain;
+  const auto indices = cage && cage->anatomy ? plannedIndices(*cage->anatomy, motion) : std::nullopt;
+  const double none = std::numeric_limits<double>::quiet_NaN();
   return {{"lift", lift, "mm"},
           {"angle", motion.angle * 180 / std::numbers::pi, "deg"},
           {"pivot_z", motion.pivot.z, "mm"},
@@ -118,7 +123,13 @@ std::vector<Fact> Plan::facts() const {
           {"deepest_y", deepest.y, "mm"},
           {"deepest_z", deepest.z, "mm"},
           {"intercostal_space", double(intercostalSpace), ""},
-          {"worst_cartilage_strain", 100 * worst, "%"}};
+          {"worst_cartilage_strain", 100 * worst, "%"},
+          {"depression", indices ? indices->after.depression() : none, "mm"},
+          {"haller_index", indices ? indices->after.haller() : none, ""},
+          {"correction_index", indices ? indices->after.correctionIndex() : none, "%"},
+          {"depression_before", indices ? indices->before.depression() : none, "mm"},
+          {"haller_index_before", indices ? indices->before.haller() : none, ""},
+          {"correction_index_before", indices ? indices->before.correctionIndex() : none, "%"}};
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Plan::parts() const { return {{"cage", cage}}; }

@@ -104,6 +104,7 @@ class QuasiStatic final : public Session {
     watch.poll = [&] { host.checkCancel(); };
     watch.iteration = [&](const Evaluation& now) {
       host.checkCancel();
+      host.preview(x);
       solution.energyHistory.push_back(now.energy);
       host.progress(progress(now.relativeResidual(), tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));

@@ -52,6 +52,7 @@ class Relaxation final : public Session {
         break;
       }
       solution.energyHistory.push_back(scheme->energy());
+      host.preview(scheme->positions());
       if (here.size() == 0) continue;
       lastGood = here;
       record(solution, *scheme, residual);

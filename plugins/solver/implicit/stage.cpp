@@ -48,6 +48,7 @@ class ImplicitSession final : public Session {
         solution.message = "a force at the " + system_.nodeName(e.residual.node) + " is not finite";
         break;
       }
+      host.preview(stepper.positions());
       host.progress(t * std::clamp(std::log(std::max(solution.relativeResidual, 1e-300)) / std::log(settings_.tolerance), 0.0, 1.0),
                     fmt::format("step {}, residual {:.1e}", n, solution.relativeResidual));
       if (t < 1 || !e.isWithin(settings_.tolerance)) {

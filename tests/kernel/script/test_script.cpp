@@ -158,3 +158,38 @@ TEST(Script, LeavesNothingForTheNextOne) {
   s.run("leftover = 1");
   EXPECT_THROW(s.run("print(leftover)"), Error);
 }
+
+TEST(ScriptConsole, KeepsItsStateBetweenLinesAndPrintsValues) {
+  Script s;
+  s.engine.evaluate("x = 6");
+  s.engine.evaluate("x * 7, 'done'");
+  EXPECT_EQ(s.printed, "42\tdone\n");
+}
+
+TEST(ScriptConsole, GoesOnAfterAnErrorAndAfterACancel) {
+  Script s;
+  s.engine.evaluate("x = 1");
+  EXPECT_TRUE(contains(errorOf([&] { s.engine.evaluate("laoder.counter{}"); }).what(), "console:1"));
+  EXPECT_THROW(s.engine.evaluate("setmetatable({}, { __tostring = function() error('no') end })"), Error);
+  s.cancel = true;
+  EXPECT_THROW(s.engine.evaluate("while true do end"), Cancelled);
+  s.cancel = false;
+  s.engine.evaluate("x");
+  EXPECT_EQ(s.printed, "1\n");
+}
+
+TEST(ScriptConsole, SeesValuesThatTheProgramDefinesAndGivesItsOwn) {
+  Script s;
+  s.engine.define("ct", s.runner.run("loader.counter", {}, {}).front());
+  s.engine.evaluate("ct.slices");
+  EXPECT_EQ(s.printed, "4.0\n");
+  s.engine.evaluate("list = { ct, ct } name = 'solver.x' plain = { b = 2, a = { 1, 2 }, c = 'text' }");
+  EXPECT_EQ(s.engine.handles("list").size(), 2u);
+  EXPECT_EQ(s.engine.text("name"), "solver.x");
+  const Settings plain = s.engine.settings("plain");
+  ASSERT_EQ(plain.size(), 3u);
+  EXPECT_EQ(plain[0].first, "a");
+  EXPECT_EQ(std::get<double>(plain[1].second), 2);
+  EXPECT_TRUE(s.engine.handles("nothing").empty());
+  EXPECT_TRUE(s.engine.text("nothing").empty());
+}

@@ -1,0 +1,63 @@
+// The whole window: its layout, and one frame after another.
+#pragma once
+
+#include "app/view/context.h"
+#include "app/view/panels/compare_panel.h"
+#include "app/view/panels/scene_panel.h"
+#include "app/view/panels/script_panel.h"
+#include "app/view/panels/slices_panel.h"
+#include "app/view/platform/target.h"
+
+#include <array>
+
+namespace pectora::view {
+
+/// ImGui's own state, which must exist before the target and outlive it. The target's scale then sets the theme.
+struct ImGuiHolder {
+  ImGuiHolder();
+  ~ImGuiHolder();
+  ImGuiHolder(const ImGuiHolder&) = delete;
+  ImGuiHolder& operator=(const ImGuiHolder&) = delete;
+};
+
+class App {
+ public:
+  App(Target& target, Registry& registry, std::function<void()> wake);
+  ~App();
+
+  /// Draws one frame.
+  void frame();
+  /// Frames that are still due without any event: the layout settles, or edges become fine.
+  bool wantsFrame() const;
+  /// Writes the last frame as a PNG.
+  void savePicture(const std::string& path) const;
+  Context& context() { return context_; }
+  Camera& camera() { return scene_.camera(); }
+
+ private:
+  void topBar(float width, float height);
+  void leftColumn(float width, float height);
+  void center(float width, float height);
+  void opening(float width, float height);
+  void splitter(const char* name, float x, float y, float height, float& value, float sign);
+  void shortcuts();
+
+  Target& target_;
+  Context context_;
+  Renderer renderer_;
+  ScenePanel scene_{renderer_};
+  SlicesPanel slices_;
+  ComparePanel compare_{renderer_};
+  ScriptPanel script_;
+  int settling_ = 3;            // frames that are drawn in any case
+  bool isCoarse_ = false;       // the picture that is shown becomes finer in the next frame
+  /// What each tab shows of the scene while another is open; that of the open one is in the context.
+  struct TabLook {
+    SkinLook skin = SkinLook::natural;
+    bool hasBones = true, hasScan = false;
+  };
+  std::array<TabLook, 6> looks_{{{}, {}, {SkinLook::glass}, {SkinLook::displacement}, {SkinLook::hidden, false, true}, {}}};
+  Tab lastTab_ = Tab::patient;
+};
+
+}  // namespace pectora::view

@@ -1,0 +1,131 @@
+#include "app/view/context.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace pectora::view {
+
+namespace fs = std::filesystem;
+
+void Layout::load() {
+  std::ifstream file(stateFolder() / "layout");
+  float l = 0, r = 0, c = 0;
+  if (file >> l >> r >> c && l > 100 && r > 100 && c > 50 && l < 2000 && r < 2000 && c < 2000) left = l, right = r, console = c;
+}
+
+void Layout::save() const { std::ofstream(stateFolder() / "layout") << left << " " << right << " " << console << "\n"; }
+
+Context::Context(Registry& registry, std::function<void()> wake) : catalog(registry), worker_(registry, std::move(wake)) {
+  choices = initialChoices(catalog.ids("solver"));
+  history.begin(choices);
+  layout.load();
+  results = worker_.results();
+}
+
+void Context::refresh() {
+  const auto old = results;
+  results = worker_.results();
+  activity = worker_.activity();
+  for (LogLine& line : worker_.takeLog()) {
+    if (line.kind == LogLine::Kind::error) message = line.text;
+    log.push_back(std::move(line));
+  }
+  if (log.size() > 2000) log.erase(log.begin(), log.begin() + std::ptrdiff_t(log.size() - 2000));
+  {
+    const std::lock_guard lock(inbox_->mutex);
+    if (inbox_->springs && picked) picked->springs = std::move(*inbox_->springs), picked->isKnown = true;
+    inbox_->springs.reset();
+    if (inbox_->worths) worths = std::move(*inbox_->worths);
+    inbox_->worths.reset();
+    if (inbox_->choices) {
+      choices = std::move(*inbox_->choices);
+      inbox_->choices.reset();
+      changed(false);
+    }
+  }
+  // A picked point keeps its springs up to date; another scene has other points.
+  if (results->scene.value != old->scene.value) worths.clear();
+  if (picked && results->motion.value != old->motion.value) {
+    const Motion* motion = results->motionValue();
+    if (!motion || std::size_t(picked->point) >= motion->outer.size()) picked.reset();
+    else if (!results->isLive) pickPoint(picked->point);
+  }
+}
+
+void Context::changed(bool isDragging) {
+  message.clear();
+  if (!isDragging) history.keep(choices);
+  worker_.want(choices, isDragging);
+}
+
+void Context::undo() {
+  if (!history.canUndo()) return;
+  choices = history.undo();
+  worker_.want(choices, false);
+}
+
+void Context::redo() {
+  if (!history.canRedo()) return;
+  choices = history.redo();
+  worker_.want(choices, false);
+}
+
+void Context::open(const std::string& given) {
+  std::string path = given;
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  const std::string ending = fs::path(path).extension().string();
+  if (!fs::exists(path)) {
+    message = "There is nothing at " + path;
+    return;
+  }
+  recent.add(path);
+  if (ending == ".lua") {
+    worker_.run("preset", [inbox = inbox_, now = choices, path](Pipeline& pipeline) {
+      Choices preset = pipeline.withPreset(now, path);
+      const std::lock_guard lock(inbox->mutex);
+      inbox->choices = std::move(preset);
+    });
+    return;
+  }
+  for (const char* surface : {".ply", ".stl", ".obj", ".vtk", ".vtp", ".txt"}) {
+    if (ending != surface) continue;
+    choices.scanPath = path;
+    choices.scanLandmarks = {};
+    tab = Tab::compare;
+    changed(false);
+    return;
+  }
+  choices.source = Source::dicom;
+  choices.loader = {"loader.dicom", {{"path", path}}};
+  choices.ctLandmarks = {};
+  picked.reset();
+  changed(false);
+}
+
+void Context::openPhantom() {
+  if (choices.source != Source::phantom) choices.loader = {"loader.phantom", {{"matrix", 256.0}}};
+  choices.source = Source::phantom;
+  choices.scanPath.clear();
+  choices.ctLandmarks = choices.scanLandmarks = {};
+  picked.reset();
+  changed(false);
+}
+
+void Context::pickPoint(int point) {
+  if (!picked || picked->point != point) picked = PickedPoint{point, {}, false};
+  worker_.run("springs", [inbox = inbox_, point](Pipeline& pipeline) {
+    auto springs = pipeline.springsAt(point);
+    const std::lock_guard lock(inbox->mutex);
+    inbox->springs = std::move(springs);
+  });
+}
+
+void Context::measureEffects() {
+  worker_.run("measuring effects", [this, inbox = inbox_](Pipeline& pipeline) {
+    auto measured = pipeline.measureEffects([this](double fraction, const std::string& what) { worker_.progress("effects", fraction, what); });
+    const std::lock_guard lock(inbox->mutex);
+    inbox->worths = std::move(measured);
+  });
+}
+
+}  // namespace pectora::view

@@ -1,0 +1,90 @@
+// What all panels share.
+#pragma once
+
+#include "app/view/platform/folders.h"
+#include "app/view/render/renderer.h"
+#include "app/view/session/catalog.h"
+#include "app/view/session/worker.h"
+
+#include <optional>
+
+namespace pectora::view {
+
+/// The steps of the work, as tabs from left to right.
+enum class Tab { patient, anatomy, bar, tissue, compare, script };
+
+enum class SkinLook { natural, glass, displacement, hidden };
+
+/// How the scene is shown. Not part of what is computed.
+struct SceneOptions {
+  SkinLook skin = SkinLook::natural;
+  bool hasBones = true, hasBar = true, hasScan = false, hasSprings = true;
+  float part = 1;              ///< 0 before, 1 after
+  bool isRangeFixed = false;   ///< of the colour bar
+  float range = 30;            ///< its end, mm
+  ClipPlane clip;
+  int clipAxis = 0;            ///< 0 x, 1 y, 2 z
+  float clipAt = 0;            ///< mm from the target
+};
+
+/// The parts of the window, in units of the layout; kept between sessions.
+struct Layout {
+  float left = 344, right = 264, console = 200;
+  void load();
+  void save() const;
+};
+
+struct PickedPoint {
+  int point = 0;
+  std::vector<PickedSpring> springs;
+  bool isKnown = false;   ///< whether the springs have come
+};
+
+/// What tasks of the worker leave for the window.
+struct Inbox {
+  std::mutex mutex;
+  std::optional<std::vector<PickedSpring>> springs;
+  std::optional<std::vector<EffectWorth>> worths;
+  std::optional<Choices> choices;
+};
+
+class Context {
+ public:
+  Context(Registry& registry, std::function<void()> wake);
+
+  Catalog catalog;
+  RecentFiles recent;
+  Choices choices;
+  History history;
+  SceneOptions scene;
+  Layout layout;
+  Tab tab = Tab::patient;
+  float scale = 1;                     ///< pixels of one unit of the layout
+  std::shared_ptr<const Results> results;
+  Activity activity;
+  std::vector<LogLine> log;
+  std::optional<PickedPoint> picked;
+  std::vector<EffectWorth> worths;     ///< empty: not measured for the present scene
+  std::string typedPath, typedScan, presetName = "my preset";   ///< what stands in those fields
+  std::string message;                 ///< for the status line; empty: none
+  std::optional<std::string> wantedPicture;   ///< path of a PNG of the next frame
+
+  /// Takes over what the worker has to tell. Once a frame.
+  void refresh();
+  /// The choices have changed; `isDragging`: and will again at once. A change that has come to its end can be undone.
+  void changed(bool isDragging);
+  void undo();
+  void redo();
+  /// Opens a folder of DICOM, a DICOMDIR, a surface (as the scan after the operation) or a preset, by its path.
+  void open(const std::string& path);
+  void openPhantom();
+  void pickPoint(int point);
+  void measureEffects();
+  Worker& worker() { return worker_; }
+
+ private:
+  std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
+  Worker worker_;   // last: its thread ends first
+};
+
+}  // namespace pectora::view

@@ -1,0 +1,50 @@
+#include "app/view/panels/controls.h"
+#include "app/view/panels/widgets.h"
+
+#include <filesystem>
+
+namespace pectora::view {
+
+void patientControls(Context& context) {
+  std::string& path = context.typedPath;
+  heading("Open a CT");
+  ImGui::SetNextItemWidth(-70 * context.scale);
+  const bool isEntered = textField("##path", "Folder of DICOM files", path, ImGuiInputTextFlags_EnterReturnsTrue);
+  mark("open.path");
+  ImGui::SameLine(0, 6 * context.scale);
+  if ((button("Open", "open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);
+  note("Or drop a folder, a scan or a preset on the window.");
+
+  if (!context.recent.paths().empty()) {
+    heading("Recent");
+    std::string chosen;
+    for (const std::string& known : context.recent.paths()) {
+      const std::string name = std::filesystem::path(known).filename().string();
+      if (ImGui::Selectable((name + "##" + known).c_str())) chosen = known;
+      hint(known);
+    }
+    if (!chosen.empty()) context.open(chosen);
+  }
+
+  ImGui::Dummy({0, 4 * context.scale});
+  ImGui::Separator();
+  heading("Or make a phantom patient");
+  if (context.choices.source != Source::phantom) {
+    if (button("Make a phantom", "phantom", {-1, 0})) context.openPhantom();
+    note("A virtual patient whose exact anatomy is known, with a scan from after the operation.");
+    return;
+  }
+  for (const Parameter& p : context.catalog.parameters("loader.phantom")) {
+    const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
+    if (isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);
+  }
+  if (ImGui::TreeNode("More about the phantom")) {
+    for (const Parameter& p : context.catalog.parameters("loader.phantom")) {
+      const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
+      if (!isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);
+    }
+    ImGui::TreePop();
+  }
+}
+
+}  // namespace pectora::view

@@ -1,0 +1,38 @@
+// The scene in 3-D, with its tools.
+#pragma once
+
+#include "app/view/panels/scene_parts.h"
+#include "app/view/render/viewport.h"
+
+namespace pectora::view {
+
+class ScenePanel {
+ public:
+  explicit ScenePanel(const Renderer& renderer) : renderer_(renderer) {}
+  void draw(Context& context, float width, float height);
+  /// Whether a further frame would show more.
+  bool isCoarse() const { return viewport_.isCoarse(); }
+  /// Pictures of one turn about the patient, as PNG files in a folder. Returns their number.
+  int turntable(const Context& context, const std::string& folder, int pictures, int width, int height);
+  Camera& camera() { return viewport_.camera; }
+
+ private:
+  void toolbar(Context& context);
+  void mouse(Context& context, const ViewportInput& input);
+  void dragBar(Context& context, const ViewportInput& input);
+  void overlays(Context& context);
+  void colorBar(Context& context);
+  void setClip(Context& context);
+
+  const Renderer& renderer_;
+  SceneParts parts_;
+  Viewport viewport_;
+  std::shared_ptr<const void> framed_;   // the scene that the camera was set for
+  bool holdsBar_ = false;
+  Vec3 grabbedAt_;                       // where the bar was taken, LPS
+  double liftAtGrab_ = 0, levelAtGrab_ = 0;
+  ImVec2 grabbedMouse_{};
+  bool isAtEnd_ = true;                  // the part slider is at "after"
+};
+
+}  // namespace pectora::view

@@ -1,0 +1,28 @@
+// The window's work as a script, a console beside it, and what leaves the window as files.
+#pragma once
+
+#include "app/view/context.h"
+
+#include <imgui.h>
+
+namespace pectora::view {
+
+class ScriptPanel {
+ public:
+  /// The left column: files that can be written. Pictures are asked for in Context::wantedPicture and wantedTurntable().
+  void controls(Context& context);
+  void draw(Context& context, float width, float height);
+  /// A folder that the turntable was asked for, once.
+  std::string takeTurntable() { return std::exchange(turntable_, {}); }
+
+ private:
+  void console(Context& context, float height);
+  static int editLine(ImGuiInputTextCallbackData* data);
+  std::string line_, folder_ = "pectora_result", turntable_;
+  std::vector<std::string> entered_;
+  int recalled_ = -1;             // index into entered_, -1: a new line
+  std::size_t shownLines_ = 0;
+  bool wantsFocus_ = false;
+};
+
+}  // namespace pectora::view

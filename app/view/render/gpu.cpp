@@ -1,0 +1,133 @@
+#include "app/view/render/gpu.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace pectora::view {
+namespace {
+
+int live = 0;
+
+unsigned compileShader(unsigned kind, const char* source) {
+  const unsigned shader = glCreateShader(kind);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  int good = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good) return shader;
+  char log[2000] = "";
+  glGetShaderInfoLog(shader, sizeof(log), nullptr, log);
+  glDeleteShader(shader);
+  throw std::logic_error(std::string("shader: ") + log);
+}
+
+}  // namespace
+
+int liveGpuObjects() { return live; }
+
+int openGlErrors() {
+  int count = 0;
+  while (glGetError() != GL_NO_ERROR) ++count;
+  return count;
+}
+
+GpuObject::GpuObject(GpuKind kind) : kind_(kind) {
+  switch (kind_) {
+    case GpuKind::buffer: glGenBuffers(1, &id_); break;
+    case GpuKind::vertexArray: glGenVertexArrays(1, &id_); break;
+    case GpuKind::texture: glGenTextures(1, &id_); break;
+    case GpuKind::framebuffer: glGenFramebuffers(1, &id_); break;
+    case GpuKind::renderbuffer: glGenRenderbuffers(1, &id_); break;
+    case GpuKind::program: id_ = glCreateProgram(); break;
+  }
+  ++live;
+}
+
+GpuObject::~GpuObject() {
+  if (id_ == 0) return;
+  switch (kind_) {
+    case GpuKind::buffer: glDeleteBuffers(1, &id_); break;
+    case GpuKind::vertexArray: glDeleteVertexArrays(1, &id_); break;
+    case GpuKind::texture: glDeleteTextures(1, &id_); break;
+    case GpuKind::framebuffer: glDeleteFramebuffers(1, &id_); break;
+    case GpuKind::renderbuffer: glDeleteRenderbuffers(1, &id_); break;
+    case GpuKind::program: glDeleteProgram(id_); break;
+  }
+  --live;
+}
+
+Program::Program(const char* vertexSource, const char* fragmentSource) {
+  const unsigned vertex = compileShader(GL_VERTEX_SHADER, vertexSource), fragment = compileShader(GL_FRAGMENT_SHADER, fragmentSource);
+  glAttachShader(object_.id(), vertex);
+  glAttachShader(object_.id(), fragment);
+  glLinkProgram(object_.id());
+  glDeleteShader(vertex);
+  glDeleteShader(fragment);
+  int good = 0;
+  glGetProgramiv(object_.id(), GL_LINK_STATUS, &good);
+  if (good) return;
+  char log[2000] = "";
+  glGetProgramInfoLog(object_.id(), sizeof(log), nullptr, log);
+  throw std::logic_error(std::string("program: ") + log);
+}
+
+void Program::use() const { glUseProgram(object_.id()); }
+int Program::uniform(const char* name) const { return glGetUniformLocation(object_.id(), name); }
+
+void Frame::resize(int width, int height, int samples) {
+  if (width == width_ && height == height_ && samples == samples_) return;
+  width_ = width, height_ = height, samples_ = samples;
+  glBindTexture(GL_TEXTURE_2D, color_.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_.id());
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, plain_.id());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.id(), 0);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
+  if (samples <= 1) return;
+  glBindRenderbuffer(GL_RENDERBUFFER, fineColor_.id());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, fineDepth_.id());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, fine_.id());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, fineColor_.id());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, fineDepth_.id());
+}
+
+void Frame::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, samples_ > 1 ? fine_.id() : plain_.id());
+  glViewport(0, 0, width_, height_);
+}
+
+void Frame::resolve() const {
+  if (samples_ <= 1) return;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, fine_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, plain_.id());
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+std::vector<unsigned char> readPixels(unsigned framebuffer, int width, int height) {
+  const std::ptrdiff_t row = std::ptrdiff_t(width) * 4;
+  std::vector<unsigned char> rgba(std::size_t(row) * height);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  for (int y = 0; y < height / 2; ++y) std::swap_ranges(rgba.begin() + row * y, rgba.begin() + row * (y + 1), rgba.begin() + row * (height - 1 - y));
+  return rgba;
+}
+
+void Picture::upload(int width, int height, const unsigned char* rgba, bool isSmooth) {
+  glBindTexture(GL_TEXTURE_2D, texture_.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+  const int filter = isSmooth ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+}  // namespace pectora::view

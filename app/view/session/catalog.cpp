@@ -1,0 +1,34 @@
+#include "app/view/session/catalog.h"
+
+namespace pectora::view {
+
+Catalog::Catalog(Registry& registry) : registry_(registry) {}
+
+std::vector<std::string> Catalog::ids(const std::string& stage) const {
+  std::vector<std::string> found;
+  for (const std::string& id : registry_.ids())
+    if (id.starts_with(stage + ".")) found.push_back(id);
+  return found;
+}
+
+const std::vector<Parameter>& Catalog::parameters(const std::string& id) {
+  const auto known = known_.find(id);
+  if (known != known_.end()) return known->second;
+  std::vector<Parameter> found;
+  try {
+    found = runner_.parametersOf(id);
+  } catch (const Error&) {
+    // The run itself will say what is wrong with it.
+  }
+  return known_[id] = std::move(found);
+}
+
+std::string Catalog::summary(const std::string& id) {
+  try {
+    return registry_.open(id).descriptor->summary;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace pectora::view

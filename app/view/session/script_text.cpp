@@ -1,0 +1,107 @@
+#include "app/view/session/script_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace pectora::view {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n') result += "\\n";
+    else result += c;
+  }
+  return result + "\"";
+}
+
+std::string literal(const SettingValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return quoted(*text);
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) return fmt::format("{{ {} }}", fmt::join(*numbers, ", "));
+  std::vector<std::string> texts;
+  for (const std::string& text : std::get<std::vector<std::string>>(value)) texts.push_back(quoted(text));
+  return fmt::format("{{ {} }}", fmt::join(texts, ", "));
+}
+
+std::string fields(const Settings& settings) {
+  std::string text;
+  for (const auto& [name, value] : settings) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, literal(value));
+  return text;
+}
+
+// { a = 1 }, or "{}".
+std::string table(const Settings& settings) { return settings.empty() ? "{}" : "{ " + fields(settings) + " }"; }
+// ", { a = 1 }", or nothing.
+std::string lastArgument(const Settings& settings) { return settings.empty() ? "" : ", " + table(settings); }
+
+std::string effectList(const Choices& choices, const std::string& indent) {
+  std::string text;
+  for (const EffectChoice& effect : choices.effects)
+    text += fmt::format("{}{}{}{},\n", indent, effect.isOn ? "" : "-- ", effect.plugin.id, table(effect.plugin.settings));
+  return text;
+}
+
+std::string landmarkCall(const Landmarks& landmarks) {
+  std::vector<std::string> names;
+  std::vector<double> positions;
+  for (const Landmark& l : landmarks.points) {
+    names.push_back(l.name);
+    positions.insert(positions.end(), {l.position.x, l.position.y, l.position.z});
+  }
+  return fmt::format("scan.landmarks{{ names = {}, positions = {} }}", literal(names), literal(positions));
+}
+
+}  // namespace
+
+std::string scriptOf(const Choices& c) {
+  std::string text = "-- What the Pectora window shows, as a script: pectora run FILE.lua\n";
+  const bool hasPhantom = c.source == Source::phantom;
+  if (c.source == Source::none) return text + "-- Nothing is open yet.\n";
+  text += fmt::format("local ct{} = {}{}\n", hasPhantom ? ", truth, phantom_scan, ct_landmarks, scan_landmarks" : "", c.loader.id, table(c.loader.settings));
+  text += fmt::format("local anatomy = {}(ct{})\n", c.segmenter.id, lastArgument(c.segmenter.settings));
+  text += fmt::format("local cage = {}(anatomy, ct{})\n\n", c.splines.id, lastArgument(c.splines.settings));
+  text += fmt::format("local scene = {}(cage, {{\n", c.model.id);
+  if (!c.model.settings.empty()) text += "  " + fields(c.model.settings) + ",\n";
+  text += "  effects = {\n" + effectList(c, "    ") + "  },\n})\n";
+  text += fmt::format("local plan = {}(cage{})\n", c.planner.id, lastArgument(c.planner.settings));
+  text += fmt::format("local motion = {}(scene, plan{})\n\n", c.solver.id, lastArgument(c.solver.settings));
+
+  // The comparison, where there is a scan and a way to bring it here.
+  const bool hasLandmarks = c.ctLandmarks.points.size() >= 3 && c.scanLandmarks.points.size() >= 3;
+  const bool isCompared = (hasPhantom || !c.scanPath.empty()) && (hasLandmarks || (hasPhantom && c.scanPath.empty()));
+  std::string lists;
+  if (isCompared) {
+    text += fmt::format("local scanned = {}\n", c.scanPath.empty() ? "phantom_scan" : "scan.file{ path = " + quoted(c.scanPath) + " }");
+    if (hasLandmarks) {
+      text += fmt::format("local on_scan = {}\n", landmarkCall(c.scanLandmarks));
+      text += fmt::format("local on_ct = {}\n", landmarkCall(c.ctLandmarks));
+    } else {
+      text += "local on_scan, on_ct = scan_landmarks, ct_landmarks\n";
+    }
+    text += fmt::format("local aligned, by_landmarks = register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
+    if (c.usesIcp) text += "local by_icp\naligned, by_icp = register.icp(aligned, motion.before, motion.after)\n";
+    text += "local comparison = comparer.surface(aligned, motion.after, { name = \"scan_vs_simulated\", unchanged = motion.before })\n\n";
+    lists = fmt::format(",\n              registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}", c.usesIcp ? ", by_icp" : "");
+  }
+  text += "report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion" + lists + ", path = \"result\" }\n";
+  text += "print(plan)\nprint(motion)\n";
+  if (isCompared) text += "print(comparison)\n";
+  return text;
+}
+
+std::string presetOf(const Choices& c) {
+  std::string text = "-- A preset of the Pectora window.\n";
+  text += "effects = {\n" + effectList(c, "  ") + "}\n";
+  const auto part = [&](const char* name, const PluginChoice& plugin) {
+    text += fmt::format("{0}_name = {1}\n{0}_settings = {2}\n", name, quoted(plugin.id), table(plugin.settings));
+  };
+  part("model", c.model);
+  part("planner", c.planner);
+  part("solver", c.solver);
+  return text;
+}
+
+}  // namespace pectora::view

@@ -1,0 +1,21 @@
+#include "app/view/view.h"
+
+#include "app/view/app.h"
+#include "app/view/tour.h"
+
+namespace pectora::view {
+
+void runView(Registry& registry, const ViewOptions& options) {
+  if (!options.tour.empty()) {
+    takeTour(registry, options);
+    return;
+  }
+  const ImGuiHolder imgui;
+  const auto target = makeWindow(options.width, options.height, options.scale);
+  App app(*target, registry, [] { wakeWindow(); });
+  if (!options.path.empty()) app.context().open(options.path);
+  // Frames are drawn when something happens, and not otherwise.
+  while (target->wait(app.wantsFrame() ? 0 : 1e9)) app.frame();
+}
+
+}  // namespace pectora::view

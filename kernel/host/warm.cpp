@@ -1,0 +1,78 @@
+#include "kernel/host/warm.h"
+
+#include <fmt/format.h>
+
+namespace pectora {
+namespace {
+
+// Refuses the first effect that cannot give what the solver uses.
+void checkNeeds(const std::string& solver, const Needs& needs, const std::vector<EffectUse>& effects) {
+  for (const EffectUse& use : effects) {
+    const char* missing = needs.hessian && !use.hasHessian ? "a Hessian" : needs.springs && !use.hasSprings ? "springs alone" : nullptr;
+    if (!missing) continue;
+    throw Error(fmt::format("{} works only with effects that offer {}, and {} does not", solver, missing, use.id))
+        .of("scene").advise(fmt::format("Take a solver that uses gradients alone, such as solver.verlet or solver.lbfgs, or leave {} out of the scene", use.id));
+  }
+}
+
+}  // namespace
+
+WarmSolve::WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::unique_ptr<Solver> solver, Registry& registry, Host& host)
+    : scene_(std::move(scene)), solver_(std::move(solver)), compiled_(compile(*scene_, registry)) {
+  for (const EffectUse& use : compiled_.effects)
+    if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
+  checkNeeds(id, solver_->needs(), compiled_.effects);
+}
+
+void WarmSolve::startFrom(const Motion& motion) {
+  const System& system = *compiled_.system;
+  const auto counts = [](std::size_t layers, std::size_t points, std::size_t anchors) {
+    return fmt::format("{} layers of {} points, {} anchors", layers, points, anchors);
+  };
+  const std::string given = counts(motion.between.size() + 2, motion.outer.size(), motion.anchors.size());
+  const std::string allowed = counts(scene_->between.size() + 2, system.points(), scene_->anchors.size());
+  if (given != allowed) throw Error("the motion to start from belongs to another scene").of("start").given(given).allowed(allowed);
+  start_ = NodeVectors(system.rest.size());
+  for (int l = 0; l < system.layers; ++l)
+    for (std::size_t i = 0; i < system.points(); ++i) start_.set(system.node(l, i), motion.layer(l)[i]);
+  for (std::size_t j = 0; j < motion.anchors.size(); ++j) start_.set(system.anchorNode(j), motion.anchors[j]);
+}
+
+void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
+
+std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
+  if (!session_) session_ = solver_->prepare(*compiled_.system, host);
+  const Drive drive = makeDrive(*scene_, plan);
+  Solution solution = session_->solve(drive, start_.size() ? &start_ : nullptr, host);
+
+  auto motion = std::make_shared<Motion>();
+  const System& system = *compiled_.system;
+  motion->scene = scene_;
+  const auto layerOf = [&](int l) {
+    std::vector<Vec3> layer;
+    layer.reserve(system.points());
+    for (std::size_t i = 0; i < system.points(); ++i) layer.push_back(solution.positions[system.node(l, i)]);
+    return layer;
+  };
+  motion->outer = layerOf(0);
+  for (int l = 1; l + 1 < system.layers; ++l) motion->between.push_back(layerOf(l));
+  motion->inner = layerOf(system.layers - 1);
+  motion->anchors = drive.frames.back();
+  motion->status = solution.status;
+  motion->message = std::move(solution.message);
+  motion->iterations = solution.iterations;
+  motion->forceEvaluations = solution.forceEvaluations;
+  motion->residual = solution.residual;
+  motion->relativeResidual = solution.relativeResidual;
+  motion->energy = solution.energy;
+  motion->energyHistory = std::move(solution.energyHistory);
+  for (int l = 0; l + 1 < system.layers; ++l) {
+    int first = -1;
+    motion->invertedPrisms += countInvertedPrisms(scene_->rows, scene_->columns, motion->layer(l), motion->layer(l + 1), first);
+    if (motion->invertedAt < 0) motion->invertedAt = first;
+  }
+  if (solution.status != SolveStatus::diverged) start_ = std::move(solution.positions);
+  return motion;
+}
+
+}  // namespace pectora

@@ -1,0 +1,36 @@
+// A scene made ready for a solver once, and solved for one plan after another.
+#pragma once
+
+#include "kernel/host/compile.h"
+#include "kernel/stage/solver.h"
+#include "kernel/value/motion.h"
+
+namespace pectora {
+
+/// What a slider needs: the scene is compiled and the solver prepared once, and each solve begins where the last one ended.
+/// Where the wall can settle in more than one way, its end depends on where it began.
+class WarmSolve {
+ public:
+  /// Compiles the scene. `id` names the solver in messages. Throws Error if the scene makes no problem, or an effect cannot
+  /// give what the solver uses.
+  WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::unique_ptr<Solver> solver, Registry& registry, Host& host);
+
+  const std::shared_ptr<const Scene>& scene() const { return scene_; }
+  const Compiled& compiled() const { return compiled_; }
+  /// The next solve begins where `motion` ended: of this scene, or of one with the same points and anchors. Throws Error for
+  /// another scene's.
+  void startFrom(const Motion& motion);
+  /// The same for positions of all nodes, such as a solver shows on its way (Host::preview). Empty: at rest.
+  void startFrom(NodeVectors positions);
+  /// Solves for the end of `plan`, whatever the status. Throws Cancelled; then the next solve begins where this one did.
+  std::shared_ptr<const Motion> solve(const Plan& plan, Host& host);
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  std::unique_ptr<Solver> solver_;
+  Compiled compiled_;
+  std::unique_ptr<Session> session_;   // made by the first solve
+  NodeVectors start_;                  // empty: at rest
+};
+
+}  // namespace pectora

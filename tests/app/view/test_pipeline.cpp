@@ -1,0 +1,167 @@
+// From choices to results, without a window.
+#include "app/view/session/script_text.h"
+#include "app/view/session/worker.h"
+
+#include "tests/app/helpers.h"
+
+using namespace pectora;
+using namespace pectora::view;
+
+namespace {
+
+double largestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, distance(a[i], b[i]));
+  return largest;
+}
+
+struct Desk {
+  Registry registry{{PECTORA_PLUGINS}};
+  Worker worker{registry, [] {}};
+  Choices choices = initialChoices({"solver.newton"});
+
+  Desk() {
+    choices.source = Source::phantom;
+    choices.loader = {"loader.phantom", {{"matrix", 128.0}, {"slice_spacing", 5.0}}};
+    assign(choices.model.settings, "spacing", 14.0);
+    assign(choices.planner.settings, "lift", 15.0);
+  }
+  // Wishes, and waits until the worker has nothing more to do.
+  std::shared_ptr<const Results> after(const Choices& wish, bool isDragging = false) {
+    worker.want(wish, isDragging);
+    wait();
+    return worker.results();
+  }
+  void wait() {
+    for (int quiet = 0; quiet < 20; quiet = worker.activity().isBusy ? 0 : quiet + 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+};
+
+}  // namespace
+
+TEST(Pipeline, GoesAllTheWayToAComparisonWithThePhantomsScan) {
+  Desk s;
+  const auto r = s.after(s.choices);
+  EXPECT_EQ(r->error, "");
+  ASSERT_TRUE(r->motionValue());
+  EXPECT_EQ(r->motionValue()->status, SolveStatus::converged);
+  ASSERT_TRUE(r->comparisonValue());
+  EXPECT_GT(r->comparisonValue()->overlap.count, 1000u);
+  EXPECT_EQ(r->effects.size(), 6u);
+}
+
+TEST(Pipeline, LiveSkinEndsAsTheScriptsDoes) {
+  Desk s;
+  s.after(s.choices);
+  assign(s.choices.planner.settings, "lift", 18.0);
+  const auto live = s.after(s.choices, true);
+  ASSERT_TRUE(live->skin);
+  EXPECT_TRUE(live->isLive);
+  EXPECT_FALSE(live->motion.record) << "a skin that rests on the way there has no provenance";
+  const auto settled = s.after(s.choices, false);
+  EXPECT_FALSE(settled->isLive);
+  EXPECT_TRUE(settled->motion.record);
+  // What the window says is what there is, and at this lift there is one way to settle.
+  EXPECT_NEAR(settled->settled, largestDistance(*live->skin, *settled->skin), 1e-12);
+  EXPECT_LT(settled->settled, 0.1);
+}
+
+TEST(Pipeline, GoesOnFromTheSkinWhenASpringConstantChanges) {
+  Desk s;
+  const auto before = s.after(s.choices);
+  assign(s.choices.effects[4].plugin.settings, "youngs_modulus", 20.0);
+  const auto after = s.after(s.choices, true);
+  EXPECT_TRUE(after->isLive);
+  EXPECT_EQ(after->ct.value, before->ct.value);
+  EXPECT_GT(largestDistance(*before->skin, *after->skin), 0.01);
+}
+
+TEST(Pipeline, TellsAnErrorKeepsWhatWasThereAndRecovers) {
+  Desk s;
+  s.after(s.choices);
+  Choices wrong = s.choices;
+  for (EffectChoice& effect : wrong.effects) effect.isOn = false;
+  const auto broken = s.after(wrong);
+  EXPECT_NE(broken->error, "");
+  EXPECT_TRUE(broken->cage.value);
+  const auto mended = s.after(s.choices);
+  EXPECT_EQ(mended->error, "");
+  EXPECT_EQ(mended->motionValue()->status, SolveStatus::converged);
+}
+
+TEST(Pipeline, StopsAtOnceWhenCancelledAndGoesOnWhenAsked) {
+  Desk s;
+  assign(s.choices.loader.settings, "matrix", 512.0);
+  s.worker.want(s.choices, false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  s.worker.cancel();
+  s.wait();
+  EXPECT_FALSE(s.worker.results()->motionValue());
+  assign(s.choices.loader.settings, "matrix", 128.0);
+  EXPECT_TRUE(s.after(s.choices)->motionValue());
+}
+
+TEST(Pipeline, TellsTheSpringsOfAPointInBalance) {
+  Desk s;
+  const auto r = s.after(s.choices);
+  std::vector<PickedSpring> springs;
+  const int point = r->sceneValue()->index(r->sceneValue()->rows / 2, r->sceneValue()->columns / 2);
+  s.worker.run("springs", [&](Pipeline& pipeline) { springs = pipeline.springsAt(point); });
+  s.wait();
+  // Stretch 4, shear 4, bend 16, through the wall 25.
+  EXPECT_EQ(springs.size(), 49u);
+  Vec3 sum;
+  double largest = 0;
+  for (const PickedSpring& spring : springs) {
+    sum += normalized(spring.to - spring.from) * spring.force;
+    largest = std::max(largest, std::abs(spring.force));
+  }
+  EXPECT_LT(norm(sum), 1e-4 * largest) << "a point at rest";
+}
+
+TEST(Pipeline, MeasuresWhatEachEffectChanges) {
+  Desk s;
+  s.after(s.choices);
+  std::vector<EffectWorth> worths;
+  s.worker.run("effects", [&](Pipeline& pipeline) { worths = pipeline.measureEffects([](double, const std::string&) {}); });
+  s.wait();
+  ASSERT_EQ(worths.size(), 6u);
+  const auto of = [&](const std::string& id) { return *std::find_if(worths.begin(), worths.end(), [&](const EffectWorth& w) { return w.id == id; }); };
+  EXPECT_GT(of("effect.cross").largest, of("effect.bend").largest);
+  for (const EffectWorth& w : worths) EXPECT_LE(w.rms, w.largest) << w.id;
+}
+
+TEST(Pipeline, ConsoleSeesTheResultsAndPresetsComeBack) {
+  Desk s;
+  s.after(s.choices);
+  s.worker.takeLog();
+  s.worker.run("console", [](Pipeline& pipeline) { pipeline.evaluate("motion.status, plan.lift"); });
+  s.wait();
+  std::string printed;
+  for (const LogLine& line : s.worker.takeLog())
+    if (line.kind == LogLine::Kind::print) printed += line.text;
+  EXPECT_EQ(printed, "converged\t15.0");
+
+  const std::filesystem::path path = freshFolder("preset") / "mine.lua";
+  Choices tuned = s.choices;
+  tuned.effects[1].isOn = false;
+  assign(tuned.effects[0].plugin.settings, "youngs_modulus", 222.0);
+  tuned.solver.id = "solver.lbfgs";
+  std::ofstream(path) << presetOf(tuned);
+  Choices loaded = s.choices;
+  s.worker.run("preset", [&](Pipeline& pipeline) { loaded = pipeline.withPreset(s.choices, path.string()); });
+  s.wait();
+  EXPECT_FALSE(loaded.effects[1].isOn);
+  EXPECT_EQ(std::get<double>(*find(loaded.effects[0].plugin.settings, "youngs_modulus")), 222);
+  EXPECT_EQ(loaded.solver.id, "solver.lbfgs");
+  EXPECT_EQ(std::get<double>(*find(loaded.planner.settings, "lift")), 15);
+}
+
+TEST(Pipeline, ExportsWhatScriptsExport) {
+  Desk s;
+  s.after(s.choices);
+  const std::filesystem::path folder = freshFolder("export");
+  s.worker.run("export", [&](Pipeline& pipeline) { pipeline.exportTo(folder.string()); });
+  s.wait();
+  for (const char* file : {"summary.json", "after.ply", "bar.ply", "scan_vs_simulated.vtp"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+}

@@ -1,0 +1,87 @@
+#include "kernel/host/warm.h"
+
+#include "tests/plugins/solver/wall.h"
+
+using namespace pectora;
+
+namespace {
+
+struct QuietHost : Host {
+  int previews = 0;
+  std::size_t nodes = 0;
+  bool isCancelled = false;
+  void progress(double, const std::string&) override {}
+  bool cancelled() const override { return isCancelled; }
+  void warn(const std::string&) override {}
+  void info(const std::string&) override {}
+  void preview(const NodeVectors& positions) override { ++previews, nodes = positions.size(); }
+  std::string pluginFolder() const override { return ""; }
+};
+
+struct Warm {
+  Registry registry{{PECTORA_PLUGINS}};
+  QuietHost host;
+  WarmSolve make(std::shared_ptr<const Scene> scene, const std::string& id = "solver.newton") {
+    auto solver = registry.open(id).descriptor->makeSolver();
+    applySettings({{"tolerance", 1e-8}}, [&](Visitor& v) { solver->describe(v); });
+    return {std::move(scene), id, std::move(solver), registry, host};
+  }
+};
+
+}  // namespace
+
+TEST(WarmSolve, EndsWhereASolveFromRestDoes) {
+  Warm w;
+  WarmSolve warm = w.make(Wall(10).scene);
+  const auto rest = w.make(Wall(12).scene).solve(*Wall(12).plan, w.host);
+  warm.solve(*Wall(10).plan, w.host);
+  const auto moved = warm.solve(*Wall(12).plan, w.host);
+  EXPECT_EQ(moved->status, SolveStatus::converged);
+  // Both stop at a residual of 1e-8 of the largest spring force; the softest mode of this wall is some 1e3 softer than a spring.
+  EXPECT_LT(largestDifference(moved->outer, rest->outer), 1e-4);
+}
+
+TEST(WarmSolve, NeedsFewerForcesThanFromRest) {
+  Warm w;
+  WarmSolve warm = w.make(Wall(10).scene);
+  const int cold = warm.solve(*Wall(10).plan, w.host)->forceEvaluations;
+  EXPECT_LT(warm.solve(*Wall(10.1).plan, w.host)->forceEvaluations, cold);
+}
+
+TEST(WarmSolve, GoesOnFromTheMotionOfASceneWithOtherEffects) {
+  Warm w;
+  const auto before = w.make(Wall(10).scene).solve(*Wall(10).plan, w.host);
+  const Wall stiffer(10, 2);   // all moduli scaled alike: the same shape
+  WarmSolve warm = w.make(stiffer.scene);
+  warm.startFrom(*before);
+  const auto after = warm.solve(*stiffer.plan, w.host);
+  EXPECT_LT(largestDifference(before->outer, after->outer), 1e-4);
+}
+
+TEST(WarmSolve, RefusesTheMotionOfAnotherScene) {
+  Warm w;
+  WarmSolve warm = w.make(Wall(10).scene);
+  EXPECT_THROW(warm.startFrom(Motion{}), Error);
+}
+
+TEST(WarmSolve, KeepsItsPlaceWhenCancelled) {
+  Warm w;
+  WarmSolve warm = w.make(Wall(10).scene);
+  const auto first = warm.solve(*Wall(10).plan, w.host);
+  w.host.isCancelled = true;
+  EXPECT_THROW(warm.solve(*Wall(30).plan, w.host), Cancelled);
+  w.host.isCancelled = false;
+  EXPECT_LT(largestDifference(warm.solve(*Wall(10).plan, w.host)->outer, first->outer), 1e-4);
+}
+
+TEST(WarmSolve, EverySolverShowsItsWay) {
+  for (const char* id : {"solver.newton", "solver.lbfgs", "solver.projective", "solver.implicit", "solver.semi_implicit", "solver.verlet"}) {
+    Warm w;
+    const Wall wall(10);
+    auto solver = w.registry.open(id).descriptor->makeSolver();
+    WarmSolve warm(wall.scene, id, std::move(solver), w.registry, w.host);
+    warm.solve(*wall.plan, w.host);
+    EXPECT_GT(w.host.previews, 1) << id;
+    EXPECT_EQ(w.host.nodes, 2u * wall.scene->points() + wall.scene->anchors.size()) << id;
+  }
+}
