@@ -71,7 +71,7 @@ PECTORA_INLINE void addMissing(const Pack (&f)[3][3], const Pack& mu, const Pack
                                const Pack (&inverse)[3][3], int q, Blocks& blocks) {
   Pack u[3][3], v[3][3], s[3];
   decompose(f, u, s, v);
-  // v becomes inverse-mapped: V^T d xi = columns of inverse V.
+  // What V's columns are along the cell's directions.
   Pack m[3][3], w[3][3], g[kCorners][3];
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) w[j][i] = inverse[j][0] * v[0][i] + inverse[j][1] * v[1][i] + inverse[j][2] * v[2][i];
