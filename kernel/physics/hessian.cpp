@@ -28,6 +28,13 @@ class SystemHessian final : public Hessian {
 
 }  // namespace
 
+void Hessian::multiplySingle(const SingleVectors& v, SingleVectors& y) const {
+  NodeVectors in(v.size()), out(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) in.set(i, v[i]);
+  multiply(in, out);
+  for (std::size_t i = 0; i < v.size(); ++i) y.set(i, y[i] + out[i]);
+}
+
 Symmetric3& Symmetric3::operator+=(const Symmetric3& b) {
   xx += b.xx, xy += b.xy, xz += b.xz, yy += b.yy, yz += b.yz, zz += b.zz;
   return *this;

@@ -35,7 +35,8 @@ class Hessian {
   /// y += H v, with v over all nodes; y of driven nodes means nothing. The result does not depend on the number of threads.
   virtual void multiply(const NodeVectors& v, NodeVectors& y) const = 0;
   /// y += H v in single precision. `v` and `y` end with the grid of layers; anchors, which lie beyond, stand still.
-  virtual void multiplySingle(const SingleVectors& v, SingleVectors& y) const = 0;
+  /// Unless a term does better, by multiply: right for all but those that reach the anchors.
+  virtual void multiplySingle(const SingleVectors& v, SingleVectors& y) const;
   /// Adds the blocks on the diagonal, one a node, N/mm.
   virtual void addDiagonal(std::vector<Symmetric3>& blocks) const = 0;
   /// Calls visit(a, b, block) for the blocks beside the diagonal, N/mm: the one that joins the forces on node a with the

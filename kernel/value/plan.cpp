@@ -114,7 +114,9 @@ std::vector<Fact> Plan::facts() const {
   if (!frames.empty())
     for (const MovedCartilage& c : frames.back())
       if (std::abs(c.strain) > std::abs(worst)) worst = c.strain;
-  const auto indices = cage && cage->anatomy ? plannedIndices(*cage->anatomy, motion) : std::nullopt;
+  const PlannedIndices* indices = nullptr;
+  std::optional<PlannedIndices> planned;
+  if (cage && cage->anatomy && (planned = plannedIndices(*cage->anatomy, motion))) indices = &*planned;
   const double none = std::numeric_limits<double>::quiet_NaN();
   return {{"lift", lift, "mm"},
           {"angle", motion.angle * 180 / std::numbers::pi, "deg"},

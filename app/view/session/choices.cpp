@@ -28,7 +28,7 @@ Step firstDifference(const Choices& a, const Choices& b) {
 Choices initialChoices(const std::vector<std::string>& solvers) {
   // The fastest that there is.
   Choices c;
-  for (const char* id : {"solver.multigrid", "solver.newton", "solver.lbfgs"})
+  for (const char* id : {"solver.newton", "solver.lbfgs"})
     if (c.solver.id.empty() && std::find(solvers.begin(), solvers.end(), id) != solvers.end()) c.solver.id = id;
   if (c.solver.id.empty() && !solvers.empty()) c.solver.id = solvers.front();
   // Slack skin gives way, as in scripts/correction.lua.

@@ -52,13 +52,6 @@ void CellHessian::multiply(const NodeVectors& v, NodeVectors& y) const {
   });
 }
 
-void CellHessian::multiplySingle(const SingleVectors& v, SingleVectors& y) const {
-  NodeVectors in(v.size()), out(v.size());
-  for (std::size_t i = 0; i < v.size(); ++i) in.set(i, v[i]);
-  multiply(in, out);
-  for (std::size_t i = 0; i < v.size(); ++i) y.set(i, y[i] + out[i]);
-}
-
 void CellHessian::forEachCoupling(const Coupling& visit) const {
   const std::size_t columns = grid_.columns();
   for (int l = 0; l < grid_.layers(); ++l)

@@ -18,7 +18,6 @@ class CellHessian final : public Hessian {
   explicit CellHessian(const RestCells& rest);
   void linearise(const NodeVectors& positions, bool projected) override;
   void multiply(const NodeVectors& v, NodeVectors& y) const override;
-  void multiplySingle(const SingleVectors& v, SingleVectors& y) const override;
   void addDiagonal(std::vector<Symmetric3>& blocks) const override;
   void forEachCoupling(const Coupling& visit) const override;
   /// Adds for each node the norms of all its blocks: Gershgorin's bound of the eigenvalues.

@@ -32,6 +32,7 @@ class Loads final : public Term {
     void linearise(const NodeVectors&, bool) override {}
     void multiply(const NodeVectors&, NodeVectors&) const override {}
     void addDiagonal(std::vector<Symmetric3>&) const override {}
+    void forEachCoupling(const Coupling&) const override {}
   };
   NodeVectors forces_;
 };
@@ -77,6 +78,7 @@ class Supports final : public Term {
     void addDiagonal(std::vector<Symmetric3>& blocks) const override {
       for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] += {k.x[i], 0, 0, k.y[i], 0, k.z[i]};
     }
+    void forEachCoupling(const Coupling&) const override {}
   };
   NodeVectors rest_, target_, k_;
 };
