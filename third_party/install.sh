@@ -12,7 +12,7 @@ packages=(
   # Scripts, command line, texts, hashes
   liblua5.4-dev libcli11-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libxxhash-dev
   # Pictures
-  libcairo2-dev fonts-dejavu-core
+  libcairo2-dev fonts-dejavu-core gnuplot-nox
   # The window
   libimgui-dev libglfw3-dev libepoxy-dev libegl1 libgl1-mesa-dri
   # Tests; CalculiX to compare the solid wall with

@@ -26,7 +26,7 @@ Step firstDifference(const Choices& a, const Choices& b) {
 }
 
 Choices initialChoices(const std::vector<std::string>& solvers) {
-  // The fastest that there is.
+  // The fastest on walls as coarse as a window moves at once.
   Choices c;
   for (const char* id : {"solver.newton", "solver.lbfgs"})
     if (c.solver.id.empty() && std::find(solvers.begin(), solvers.end(), id) != solvers.end()) c.solver.id = id;

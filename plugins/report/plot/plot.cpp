@@ -1,0 +1,93 @@
+#include "plugins/report/plot/plot.h"
+
+#include "plugins/report/common/atomic_file.h"
+
+#include "kernel/stage/error.h"
+
+#include <fmt/format.h>
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+extern char** environ;
+
+namespace pectora {
+namespace {
+
+bool isDrawable(const WorkPoint& p) { return std::isfinite(p.cost) && std::isfinite(p.error) && p.cost > 0 && p.error > 0; }
+
+// A text in single quotes, in which gnuplot reads nothing but a doubled quote.
+std::string inQuotes(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c == '\n' ? ' ' : c);
+  return result + "'";
+}
+
+std::string dataBlock(const std::string& name, const std::vector<WorkPoint>& points) {
+  std::string text = "$" + name + " << EOD\n";
+  for (const WorkPoint& p : points) text += fmt::format("{:.9g} {:.9g}\n", p.cost, p.error);
+  return text + "EOD\n";
+}
+
+}  // namespace
+
+std::vector<WorkPoint> paretoFront(std::vector<WorkPoint> points) {
+  std::erase_if(points, [](const WorkPoint& p) { return !isDrawable(p); });
+  std::stable_sort(points.begin(), points.end(), [](const WorkPoint& a, const WorkPoint& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
+  });
+  std::vector<WorkPoint> front;
+  for (const WorkPoint& p : points)
+    if (front.empty() || p.error < front.back().error) front.push_back(p);
+  return front;
+}
+
+std::string gnuplotCommands(const WorkPrecision& picture, const std::string& pngPath) {
+  // Each series in the order of its first run.
+  std::vector<std::pair<std::string, std::vector<WorkPoint>>> series;
+  for (const WorkPoint& p : picture.points) {
+    if (!isDrawable(p)) continue;
+    auto found = std::find_if(series.begin(), series.end(), [&](const auto& s) { return s.first == p.series; });
+    if (found == series.end()) found = series.insert(series.end(), {p.series, {}});
+    found->second.push_back(p);
+  }
+  if (series.empty()) throw Error("there is no run with a positive cost and error to draw").of("points");
+  const std::vector<WorkPoint> front = paretoFront(picture.points);
+
+  std::string text = "set terminal pngcairo noenhanced size 1100,720 font 'DejaVu Sans,12' linewidth 1.4\n";
+  text += "set output " + inQuotes(pngPath) + "\n";
+  text += "set title " + inQuotes(picture.title) + "\nset xlabel " + inQuotes(picture.costLabel) + "\nset ylabel " + inQuotes(picture.errorLabel) + "\n";
+  text += "set logscale xy\nset format x '%g'\nset format y '%g'\nset grid back linecolor '#e4e4e4'\nset border linecolor '#808080'\n";
+  text += "set key outside right top samplen 2 spacing 1.2\nset offsets graph 0.05, graph 0.05, graph 0.08, graph 0.08\n";
+  for (std::size_t i = 0; i < series.size(); ++i) text += dataBlock(fmt::format("series{}", i), series[i].second);
+  text += dataBlock("front", front);
+  // Colours that remain apart for the colour-blind (Okabe and Ito 2008).
+  const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#a0a000"};
+  text += "plot $front with lines linecolor '#c8c8c8' linewidth 4 title 'no other is better'";
+  for (std::size_t i = 0; i < series.size(); ++i)
+    text += fmt::format(", \\\n  $series{} with linespoints linecolor '{}' pointtype {} pointsize 1.2 title {}", i, colours[i % 8], 4 + i % 8 * 2 % 12,
+                        inQuotes(series[i].first));
+  if (picture.floor > 0)
+    text += fmt::format(", \\\n  {:.9g} with lines linecolor '#b00000' dashtype 2 title {}", picture.floor, inQuotes(picture.floorLabel));
+  return text + "\n";
+}
+
+void runGnuplot(const std::string& commands, const std::string& commandPath) {
+  writeFile(commandPath, commands);
+  std::string program = "gnuplot", file = commandPath;
+  char* arguments[] = {program.data(), file.data(), nullptr};
+  pid_t child = 0;
+  int status = 0;
+  const int failure = posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments, environ);
+  if (failure == 0) waitpid(child, &status, 0);
+  std::error_code ignored;
+  std::filesystem::remove(commandPath, ignored);
+  if (failure != 0) throw Error("gnuplot, which draws this picture, is not installed", ErrorKind::runFailed).advise("Install it: apt install gnuplot-nox");
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error("gnuplot could not draw the picture", ErrorKind::runFailed);
+}
+
+}  // namespace pectora
