@@ -11,6 +11,7 @@ local p = parameters{
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
+  { name = "accuracy", default = 0, unit = "mm", range = { 0, 10 }, doc = "Choose model, spacing and solver for the least time in which the computed skin comes about so near (RMS in the pit) to a far finer computation; 0: as given" },
   { name = "edge", default = "subpixel", choices = { "subpixel", "paper" }, doc = "Where the skin lies: the steepest grey value, or the paper's first pixel" },
   { name = "slices", default = 20, range = { 0, 1000 }, doc = "Number of slice pictures with contours" },
   { name = "out", default = "result", role = "output", doc = "Folder for the results" },
@@ -21,21 +22,29 @@ local ct = loader.dicom{ path = p.ct, series = p.series }
 local anatomy = segmenter.thorax(ct, { edge = p.edge })
 local cage = splines.cartilage(anatomy, ct)
 
+-- What accuracy costs was studied by scripts/accuracy.lua.
+local choice = { model = p.model, spacing = p.spacing, solver = p.solver }
+if p.accuracy > 0 then
+  choice = require("accuracy_choices").choose(p.accuracy)
+  print(string.format("accuracy %g mm: %s at %g mm spacing, solver.%s to %g, expects %.2f mm and about %.2f s", p.accuracy, choice.model, choice.spacing,
+                      choice.solver, choice.tolerance, choice.expected, choice.seconds))
+end
+
 -- Model: the wall as springs or as a solid, and the effects that this scene calls for.
 local skin = { compression = p.skin_compression }
 local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.attachment{} }   -- within the skin; pleura to rib cage
 local scene
-if p.model == "two_layer" then
+if choice.model == "two_layer" then
   effects[5], effects[6] = effect.direct{}, effect.cross{}   -- springs between skin and pleura
-  scene = model.two_layer(cage, { spacing = p.spacing, effects = effects })
+  scene = model.two_layer(cage, { spacing = choice.spacing, effects = effects })
 else
   effects[5] = effect.tissue{}
-  scene = model.volume_mesh(cage, ct, { spacing = p.spacing, effects = effects })
+  scene = model.volume_mesh(cage, ct, { spacing = choice.spacing, effects = effects })
 end
 
 -- Operation: the bar lifts the sternum, the solver finds the skin.
 local plan = planner.nuss(cage, { lift = p.lift })
-local motion = solver[p.solver](scene, plan)
+local motion = solver[choice.solver](scene, plan, { tolerance = choice.tolerance })
 
 -- What the operation changes, and how far the prediction is from the scan.
 local comparisons = {

@@ -15,6 +15,7 @@ struct WorkPoint {
 struct WorkPrecision {
   std::string title, costLabel, errorLabel;
   std::vector<WorkPoint> points;
+  bool isJoined = true;      ///< the runs of a series by a line
   double floor = 0;          ///< error below which nothing is gained, a line; 0: none
   std::string floorLabel;
 };

@@ -32,6 +32,7 @@ class Plot final : public Stage {
     v.text("cost", picture_.costLabel, TextRole::plain, "Name and unit of the axis to the right");
     v.text("error", picture_.errorLabel, TextRole::plain, "Name and unit of the axis upwards");
     v.texts("points", points_, TextRole::plain, "The runs, each as name;cost;error");
+    v.flag("lines", picture_.isJoined, "Join the runs of one name, in their order");
     v.real("floor", picture_.floor, "", {0, 1e9}, {0, 10}, "Error below which nothing is gained, drawn as a line; 0: none");
     v.text("floor_name", picture_.floorLabel, TextRole::plain, "What that line is");
   }
@@ -52,7 +53,7 @@ class Plot final : public Stage {
 
  private:
   std::string path_;
-  WorkPrecision picture_{"", "time, s", "error, mm", {}, 0, ""};
+  WorkPrecision picture_{"", "time, s", "error, mm", {}, true, 0, ""};
   std::vector<std::string> points_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 WorkPrecision picture() {
   return {"A 'quoted' title", "time, s", "error, mm",
           {{"newton", 0.3, 1e-3}, {"newton", 0.1, 1e-1}, {"verlet", 0.05, 0.2}, {"verlet", 0.5, 0.05}, {"verlet", 0.2, 0}},
-          0.6, "scanner"};
+          true, 0.6, "scanner"};
 }
 
 }  // namespace

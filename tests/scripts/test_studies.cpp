@@ -1,0 +1,61 @@
+// The studies of solvers and of accuracy, as a user runs them, in their small form.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Ended {
+  int code = -1;
+  std::string text;
+};
+
+Ended run(const std::string& script, const std::string& arguments) {
+  const fs::path out = fs::temp_directory_path() / ("pectora_test_" + fs::path(script).stem().string() + ".txt");
+  const std::string command = std::string(PECTORA_PROGRAM) + " run " + PECTORA_SOURCE + "/" + script + " " + arguments + " > " + out.string() + " 2> /dev/null";
+  Ended result;
+  result.code = std::system(command.c_str());
+  std::ostringstream text;
+  text << std::ifstream(out).rdbuf();
+  result.text = text.str();
+  fs::remove(out);
+  return result;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+  return found;
+}
+
+}  // namespace
+
+TEST(SwapScript, BringsEverySolverToRest) {
+  const Ended swap = run("scripts/swap.lua", "matrix=128 lift=15 spacing=16");
+  EXPECT_EQ(swap.code, 0) << swap.text;
+  EXPECT_EQ(count(swap.text, "converged"), 8u) << swap.text;
+}
+
+TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
+  const fs::path out = fs::temp_directory_path() / "pectora_test_accuracy";
+  fs::remove_all(out);
+  const Ended study = run("scripts/accuracy.lua", "quick=true runs=1 out=" + out.string());
+  EXPECT_EQ(study.code, 0) << study.text;
+  for (const char* file : {"accuracy.csv", "solver_error.png", "total_error.png"}) EXPECT_TRUE(fs::exists(out / file)) << file;
+  std::ostringstream table;
+  table << std::ifstream(out / "accuracy.csv").rdbuf();
+  for (const char* solver : {"verlet", "semi_implicit", "implicit", "newton", "lbfgs", "multigrid", "projective"})
+    EXPECT_GT(count(table.str(), std::string(",") + solver + ","), 0u) << solver;
+  fs::remove_all(out);
+}
+
+TEST(Accuracy, PromisedIsKeptOnPhantomsThatWereNotStudied) {
+  const Ended promise = run("tests/scripts/accuracy_promise.lua", "");
+  EXPECT_EQ(promise.code, 0) << promise.text;
+  EXPECT_EQ(count(promise.text, "kept"), 4u) << promise.text;
+}
