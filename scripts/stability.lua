@@ -4,7 +4,7 @@ local p = parameters{
   { name = "only", doc = "Name of one case; random: scenes drawn from the seed" },
   { name = "solver", doc = "Name of one solver" },
   { name = "seed", default = 1, range = { 0, 2e9 }, doc = "Seed of what is left to chance" },
-  { name = "scenes", default = 1, range = { 1, 1e6 }, doc = "How many random scenes, with seeds from `seed` on" },
+  { name = "scenes", default = 1, range = { 1, 1000000 }, doc = "How many random scenes, with seeds from `seed` on" },
   { name = "brief", default = false, doc = "Print broken rules and counts alone" },
 }
 
