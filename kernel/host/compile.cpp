@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace pectora {
 namespace {
@@ -29,6 +30,42 @@ void checkNodes(const System& system) {
     if (!(std::isfinite(system.mass[i]) && system.mass[i] > 0))
       throw Error("a mass must be positive and finite")
           .given(fmt::format("{:g} kg", system.mass[i])).at(system.nodeName(i)).advise("Check the tissue's density");
+}
+
+// Points that hang together, but on no anchor, have no place to be. A term that is more than springs joins all that it touches.
+void checkIslands(const System& system) {
+  std::vector<std::size_t> root(system.rest.size());
+  std::iota(root.begin(), root.end(), std::size_t(0));
+  const auto find = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  // All anchors count as one node, the last.
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const std::size_t one = find(a < system.freeNodes ? a : root.size() - 1), other = find(b < system.freeNodes ? b : root.size() - 1);
+    root[std::min(one, other)] = std::max(one, other);
+  };
+  for (const auto& term : system.terms) {
+    if (term->hasSprings()) {
+      term->forEachSpring([&](const Spring& s) { join(s.a, s.b); });
+      continue;
+    }
+    std::vector<double> bound(system.rest.size());
+    term->addStiffnessBound(bound);
+    std::size_t last = root.size();
+    for (std::size_t i = 0; i < bound.size(); ++i) {
+      if (bound[i] <= 0) continue;
+      if (last < root.size()) join(last, i);
+      last = i;
+    }
+  }
+  std::size_t loose = 0, first = 0;
+  const std::size_t held = system.rest.size() > system.freeNodes ? find(root.size() - 1) : root.size();
+  for (std::size_t i = system.freeNodes; i-- > 0;)
+    if (find(i) != held) ++loose, first = i;
+  if (loose > 0)
+    throw Error(fmt::format("{} of {} points hang together, but on nothing that holds them", loose, system.freeNodes))
+        .at(system.nodeName(first) + " and others").advise("Call effect.attachment and effect.cross in the scene; of a solid wall tissue and attachment");
 }
 
 }  // namespace
@@ -98,6 +135,7 @@ Compiled compile(const Scene& scene, Registry& registry) {
   if (loose > 0)
     throw Error(fmt::format("{} of {} points are held by no spring", loose, bound.size()))
         .at(system.nodeName(first) + " and others").advise("Call the effects cross (or direct) and attachment in the scene; of a solid wall tissue and attachment");
+  checkIslands(system);
   return compiled;
 }
 
@@ -107,7 +145,11 @@ Drive makeDrive(const Scene& scene, const Plan& plan) {
   for (std::size_t f = 0; f < frames; ++f) {
     std::vector<Vec3> positions;
     positions.reserve(scene.anchors.size());
-    for (const Anchor& anchor : scene.anchors) positions.push_back(plan.moved(anchor, double(f) / double(frames - 1)));
+    for (const Anchor& anchor : scene.anchors) {
+      positions.push_back(plan.moved(anchor, double(f) / double(frames - 1)));
+      if (!isFinite(positions.back()))
+        throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", positions.size() - 1));
+    }
     drive.frames.push_back(std::move(positions));
   }
   return drive;

@@ -36,6 +36,8 @@ void WarmSolve::startFrom(const Motion& motion) {
   for (int l = 0; l < system.layers; ++l)
     for (std::size_t i = 0; i < system.points(); ++i) start_.set(system.node(l, i), motion.layer(l)[i]);
   for (std::size_t j = 0; j < motion.anchors.size(); ++j) start_.set(system.anchorNode(j), motion.anchors[j]);
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    if (!isFinite(start_[i])) throw Error("a position of the motion to start from is not a finite number").of("start").at(system.nodeName(i));
 }
 
 void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
@@ -65,6 +67,7 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   motion->residual = solution.residual;
   motion->relativeResidual = solution.relativeResidual;
   motion->energy = solution.energy;
+  motion->energyGrowth = solution.energyGrowth;
   motion->energyHistory = std::move(solution.energyHistory);
   for (int l = 0; l + 1 < system.layers; ++l) {
     int first = -1;

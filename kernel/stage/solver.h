@@ -18,6 +18,8 @@ struct Solution {
   double relativeResidual = 0;
   double energy = 0;                   ///< N mm
   std::vector<double> energyHistory;   ///< N mm
+  double energyGrowth = 0;             ///< largest rise of what the method lets only fall (a minimiser its objective, an integrator
+                                       ///< potential and kinetic energy) with the driven nodes at rest, over its value before
 };
 
 /// A prepared system. solve can be called again and again.

@@ -27,6 +27,7 @@ struct Motion : Value {
   double relativeResidual = 0;              ///< the same over the largest spring force
   double energy = 0;                        ///< N mm
   std::vector<double> energyHistory;        ///< N mm, at equal distances of iterations
+  double energyGrowth = 0;                  ///< largest rise in an accepted step with the bar at rest, over the energy before it
   int invertedPrisms = 0;                   ///< cells between two layers that turned inside out
   int invertedAt = -1;                      ///< index of the first such point in its layer
 

@@ -59,6 +59,7 @@ std::vector<Fact> Motion::facts() const {
           {"residual", residual, "N"},
           {"relative_residual", relativeResidual, ""},
           {"energy", energy, "N mm"},
+          {"energy_growth", energyGrowth, ""},
           {"inverted_prisms", double(invertedPrisms), ""},
           {"greatest_skin_displacement", greatest, "mm"}};
 }

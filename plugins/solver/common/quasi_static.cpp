@@ -101,11 +101,14 @@ class QuasiStatic final : public Session {
   Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& end, double tolerance, int iterations, double part,
                    Solution& solution, Host& host) {
     Watch watch;
+    double before = INFINITY;   // the objective before the last step
     watch.poll = [&] { host.checkCancel(); };
     watch.iteration = [&](const Evaluation& now) {
       host.checkCancel();
       host.preview(x);
       solution.energyHistory.push_back(now.energy);
+      if (before > 0) solution.energyGrowth = std::max(solution.energyGrowth, (now.value - before) / before);
+      before = now.value;
       host.progress(progress(now.relativeResidual(), tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
     };

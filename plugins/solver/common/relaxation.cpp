@@ -26,6 +26,7 @@ class Relaxation final : public Session {
     double leastResidual = INFINITY;
     const double negligible = negligibleForce(system_);
     int leastAt = 0;
+    double total = INFINITY;   // potential and kinetic energy when last looked at with the bar in place
     NodeVectors lastGood = scheme->positions();
 
     for (int n = 1; n <= settings_.maxIterations; ++n) {
@@ -55,6 +56,9 @@ class Relaxation final : public Session {
       host.preview(scheme->positions());
       if (here.size() == 0) continue;
       lastGood = here;
+      const double now = scheme->energy() + scheme->kineticEnergy();
+      if (total > 0) solution.energyGrowth = std::max(solution.energyGrowth, (now - total) / total);
+      total = now;
       record(solution, *scheme, residual);
       host.progress(progress(solution.relativeResidual), fmt::format("step {}, residual {:.1e}", n, solution.relativeResidual));
       if (residual.force <= settings_.tolerance * scheme->largestForce() || residual.force <= negligible) {
@@ -123,6 +127,7 @@ void ExplicitScheme::step(double damping) {
     change += dot(dx, gradient_[i] - gradientBefore_[i]);
     moved += mass_[i] * dot(dx, dx);
   }
+  kinetic_ = moved / (2 * step_ * step_ * kMmPerM);
   rayleigh_ = started_ && moved > 0 ? std::max(0.0, change / moved) * kMmPerM : 0;
 
   for (std::size_t i = 0; i < system_.freeNodes; ++i) {

@@ -31,6 +31,8 @@ class ExplicitScheme {
 
   NodeVectors& positions() { return now_; }
   const NodeVectors& positions() const { return now_; }
+  /// Kinetic energy of the motion into the positions before the last step, N mm.
+  double kineticEnergy() const { return kinetic_; }
   /// Of the positions before the last step: gradient (N), energy (N mm), the largest single spring force (N).
   const NodeVectors& gradient() const { return gradient_; }
   double energy() const { return energy_; }
@@ -50,7 +52,7 @@ class ExplicitScheme {
   std::vector<double> mass_;
   double step_;
   NodeVectors now_, before_, gradient_, gradientBefore_;
-  double energy_ = 0, largestForce_ = 0, rayleigh_ = 0;
+  double energy_ = 0, largestForce_ = 0, rayleigh_ = 0, kinetic_ = 0;
   int evaluations_ = 0;
   bool started_ = false;
 };

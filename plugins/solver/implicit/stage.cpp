@@ -29,13 +29,19 @@ class ImplicitSession final : public Session {
     Solution solution;
     Watch watch;
     watch.poll = [&] { host.checkCancel(); };
-    watch.iteration = [&](const Evaluation&) { host.checkCancel(); };
+    double before = INFINITY;   // the step's objective before the last iteration
+    watch.iteration = [&](const Evaluation& e) {
+      host.checkCancel();
+      if (before > 0) solution.energyGrowth = std::max(solution.energyGrowth, (e.value - before) / before);
+      before = e.value;
+    };
     // A tenth of the tolerance within a step leaves the rest of it to the motion.
     const Minimiser::Limits limits{0.1 * settings_.tolerance, 100};
     const int rampSteps = int(std::ceil(settings_.ramp / settings_.timeStep));
     for (int n = 1; n <= settings_.maxIterations; ++n) {
       const double t = n < rampSteps ? double(n) / rampSteps : 1;
       movement.apply(t, stepper.positions());
+      before = INFINITY;
       const Outcome outcome = stepper.step(limits, watch);
       const Evaluation& e = stepper.evaluateRest();
       solution.iterations = n;

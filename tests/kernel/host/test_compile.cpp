@@ -50,12 +50,20 @@ TEST(Compile, DoesNotMapEffectsThatTheSceneDoesNotCall) {
 TEST(Compile, DropsAnEffectThatIsEmptyHereAndSaysWhy) {
   Registry registry({PECTORA_PLUGINS});
   Scene scene = flatScene();
-  scene.anchors.clear();
-  scene.effects = {call("effect.direct"), call("effect.attachment")};
+  scene.effects = {call("effect.direct"), call("effect.tissue"), call("effect.attachment")};
   const Compiled compiled = compile(scene, registry);
   EXPECT_FALSE(compiled.effects[1].isActive);
   EXPECT_FALSE(compiled.effects[1].reason.empty());
-  EXPECT_EQ(compiled.system->terms.size(), 1u);
+  EXPECT_EQ(compiled.system->terms.size(), 2u);
+}
+
+TEST(Compile, NamesThePointsThatHangTogetherButOnNothing) {
+  Registry registry({PECTORA_PLUGINS});
+  Scene scene = flatScene();
+  scene.effects = {call("effect.stretch"), call("effect.attachment")};
+  const Error error = errorOf([&] { compile(scene, registry); });
+  EXPECT_TRUE(contains(error.what(), "42 of 84 points")) << error.what();
+  EXPECT_TRUE(contains(error.what(), "skin point at row 0, column 0")) << error.what();
 }
 
 TEST(Compile, NamesThePointsThatNothingHolds) {
