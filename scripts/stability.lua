@@ -19,8 +19,9 @@ local function fault(case, name, m)
   for _, figure in ipairs{ m.residual, m.relative_residual, m.energy, m.energy_growth, m.greatest_skin_displacement } do
     if figure ~= figure or math.abs(figure) == math.huge then return "a figure is not finite" end
   end
-  if m.energy_growth > (explicit[name] and 0.05 or 1e-10) then return "the energy grew" end
   local converged, sound = m.status == "converged", m.inverted_prisms == 0
+  local isTold = not converged and m.message:find("the energy grew", 1, true)   -- explicit steps may lose hold, but must say so
+  if m.energy_growth > (explicit[name] and 0.05 or 1e-10) and not isTold then return "the energy grew" end
   if not converged and m.message == "" then return "no word on what is wrong" end
   if case.must == "refuse" then return "was not refused" end
   if case.must == "flag" and converged and sound then return "passed as sound" end
@@ -33,6 +34,8 @@ local function try(case, s, label)
   local settings = { accept_unconverged = true, scheme = scheme, tolerance = case.must == "recover" and 1e-8 or nil }
   if case.time_step > 0 and (explicit[name] or name == "implicit") then settings.time_step = case.time_step end
   if case.load_step > 0 and not explicit[name] and name ~= "implicit" then settings.load_step = case.load_step end
+  -- Many random scenes: whoever needs longer says so.
+  if p.only == "random" then settings.max_iterations = name == "implicit" and 50 or 2000 end
   local ok, m = pcall(solver[name], case.scene, case.plan, case.start, settings)
   local wrong, cells
   if ok then

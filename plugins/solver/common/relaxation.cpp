@@ -11,6 +11,9 @@
 namespace pectora {
 namespace {
 
+// Growth of the energy that is more than the ripple of explicit steps.
+constexpr double kGrowth = 0.05;
+
 constexpr double kMmPerM = 1000;  // N / kg is m/s^2
 
 class Relaxation final : public Session {
@@ -74,6 +77,9 @@ class Relaxation final : public Session {
     }
     if (solution.status == SolveStatus::stalled && solution.message.empty())
       solution.message = fmt::format("{} steps were not enough", settings_.maxIterations);
+    // Damped motion that is followed rightly only loses energy.
+    if (solution.status == SolveStatus::stalled && solution.energyGrowth > kGrowth)
+      solution.message += fmt::format("; the energy grew by {:.0f} % between two looks at it: the time step is too long for a wall so distorted", 100 * solution.energyGrowth);
     solution.positions = std::move(lastGood);
     solution.forceEvaluations = scheme->evaluations();
     return solution;
