@@ -5,6 +5,8 @@
 #include "kernel/physics/system.h"
 #include "kernel/value/plan.h"
 
+#include <cmath>
+
 namespace pectora {
 
 /// What became of one effect that a scene called.
@@ -16,6 +18,8 @@ struct EffectUse {
   std::vector<std::string> notes;   ///< such as calibrated constants
   bool hasHessian = true;           ///< whether all its terms offer one
   bool hasSprings = true;           ///< whether it is nothing but springs
+  double changeRms = NAN, changeMax = NAN;   ///< mm of the skin, as probed by leaving it out; only `explain` asks
+  std::string notProbed;            ///< why there is no such figure
 };
 
 struct Compiled {

@@ -69,7 +69,8 @@ class Runner {
   std::vector<Handle> fromCache(const std::string& key);
   void keep(const std::string& key, const std::vector<Handle>& handles);
   std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host);
-  void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene);
+  void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Plan& plan, Host& host);
+  void probe(const Scene& scene, const Plan& plan, std::vector<EffectUse>& effects, Host& host);
 
   Registry& registry_;
   Messages& messages_;
