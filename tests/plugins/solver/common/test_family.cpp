@@ -3,6 +3,9 @@
 
 #include "kernel/physics/workers.h"
 
+#include <fstream>
+#include <sstream>
+
 using namespace pectora;
 
 namespace {
@@ -129,4 +132,14 @@ TEST(Pairing, WithAnEffectThatHasGradientsAloneWorksWhereThatIsEnough) {
   const auto verlet = Solve("solver.verlet")(wall, kTight), lbfgs = Solve("solver.lbfgs")(wall, kTight);
   EXPECT_LT(largestDifference(verlet->outer, lbfgs->outer), 1e-3);
   EXPECT_GT(largestDifference(verlet->outer, Solve("solver.verlet")(plain, kTight)->outer), 0.1);
+}
+
+TEST(Scene, MapsNoPluginThatItDoesNotCall) {
+  Solve("solver.newton")(Wall(5), {});
+  std::ostringstream text;
+  text << std::ifstream("/proc/self/maps").rdbuf();
+  for (const char* called : {"solver.newton.so", "effect.cross.so", "effect.attachment.so"})
+    EXPECT_NE(text.str().find(called), std::string::npos) << called;
+  for (const char* other : {"effect.tissue.so", "effect.volume.so", "loader.dicom.so", "segmenter.thorax.so", "report.plot.so"})
+    EXPECT_EQ(text.str().find(other), std::string::npos) << other;
 }
