@@ -67,12 +67,6 @@ class Grid {
   std::vector<StencilSpring> stencil_;
 };
 
-ConstRow<double> rowOf(const NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
-Row<double> rowOf(NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
-
-ConstRow<float> rowOf(const SingleVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
-Row<float> rowOf(SingleVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
-
 // The nodes of the grid, counted from `origin`, which keeps them small.
 void take(const NodeVectors& from, Vec3 origin, SingleVectors& to) {
   for (std::size_t i = 0; i < to.size(); ++i) to.x[i] = float(from.x[i] - origin.x);

@@ -2,14 +2,30 @@
 
 #include <cmath>
 
-// One copy of each loop for wide registers, chosen when the program is loaded. (Sanitizers do not survive the choice.)
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PECTORA_WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define PECTORA_WIDE
-#endif
-
 namespace pectora::lattice {
+namespace {
+
+// Where the far end of a spring lies from the near one, and a and b of its second derivative there.
+struct Curvature {
+  float dx, dy, dz, a, b;
+  bool isDegenerate;
+};
+
+// From what the far end has moved against the near one (ux, uy, uz) and where it lay at rest.
+PECTORA_INLINE Curvature curvatureOf(float ux, float uy, float uz, float dx0, float dy0, float dz0, float stretched, float compressed, float floor) {
+  const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
+  const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
+  const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
+  const float safe = isDegenerate ? 1.0f : squared;
+  // l^2 - l0^2, without loss of digits.
+  const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
+  const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
+  const float across = k * growth / (safe + std::sqrt(safe * squared0));
+  const float a = across < floor ? floor : across;
+  return {dx, dy, dz, a, (k - a) / safe, isDegenerate};
+}
+
+}  // namespace
 
 PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> pull, RowSums sums) {
   const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
@@ -81,19 +97,10 @@ PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projec
   int degenerate = 0;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
-    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
-    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
-    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
-    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
-    const float safe = isDegenerate ? 1.0f : squared;
-    // l^2 - l0^2, without loss of digits.
-    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
-    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
-    const float across = k * growth / (safe + std::sqrt(safe * squared0));
-    const float a = across < floor ? floor : across;
-    as[i] = a, bs[i] = (k - a) / safe;
-    degenerate |= isDegenerate;
+    const Curvature c = curvatureOf(fx[i] - nx[i], fy[i] - ny[i], fz[i] - nz[i], fx0[i] - nx0[i], fy0[i] - ny0[i], fz0[i] - nz0[i],
+                                    stretched, compressed, floor);
+    as[i] = c.a, bs[i] = c.b;
+    degenerate |= c.isDegenerate;
   }
   return degenerate != 0;
 }
@@ -111,21 +118,12 @@ PECTORA_WIDE bool curvatureProducts(const RowSprings<float>& springs, bool proje
   int degenerate = 0;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
-    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
-    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
-    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
-    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
-    const float safe = isDegenerate ? 1.0f : squared;
-    // l^2 - l0^2, without loss of digits.
-    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
-    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
-    const float across = k * growth / (safe + std::sqrt(safe * squared0));
-    const float a = across < floor ? floor : across;
+    const Curvature c = curvatureOf(fx[i] - nx[i], fy[i] - ny[i], fz[i] - nz[i], fx0[i] - nx0[i], fy0[i] - ny0[i], fz0[i] - nz0[i],
+                                    stretched, compressed, floor);
     const float vx = gx[i] - hx[i], vy = gy[i] - hy[i], vz = gz[i] - hz[i];
-    const float along = (k - a) / safe * (dx * vx + dy * vy + dz * vz);
-    px[i] = a * vx + along * dx, py[i] = a * vy + along * dy, pz[i] = a * vz + along * dz;
-    degenerate |= isDegenerate;
+    const float along = c.b * (c.dx * vx + c.dy * vy + c.dz * vz);
+    px[i] = c.a * vx + along * c.dx, py[i] = c.a * vy + along * c.dy, pz[i] = c.a * vz + along * c.dz;
+    degenerate |= c.isDegenerate;
   }
   return degenerate != 0;
 }

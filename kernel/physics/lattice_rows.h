@@ -2,21 +2,12 @@
 // and does the same arithmetic in every lane, so that its bits are the same for every instruction set.
 #pragma once
 
-#include <cstddef>
+#include "kernel/physics/rows.h"
 
 namespace pectora::lattice {
 
 /// A spring shorter than this part of its rest length has no direction of its own.
 inline constexpr double kDegenerate = 1e-12;
-
-template <class T>
-struct ConstRow {
-  const T *x, *y, *z;
-};
-template <class T>
-struct Row {
-  T *x, *y, *z;
-};
 
 /// The springs of one row: near end i, far end i, for i below count, where they are now, in single precision how far they have
 /// moved from rest; and at rest. Rest lengths are the distances at rest; to compute them costs less than to read them.

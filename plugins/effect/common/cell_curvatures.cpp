@@ -169,7 +169,7 @@ PECTORA_WIDE void addCurvatures(const Run& run, const RestPack& rest, bool proje
     }
 }
 
-PECTORA_WIDE void blockProducts(std::size_t count, const float* entries, std::size_t stride, ConstVectors near, ConstVectors far, Vectors sum, Vectors farSum) {
+PECTORA_WIDE void blockProducts(std::size_t count, const float* entries, std::size_t stride, ConstRow<double> near, ConstRow<double> far, Row<double> sum, Row<double> farSum) {
   const float* k[9];
   for (int e = 0; e < 9; ++e) k[e] = entries + e * stride;
   const double *nx = near.x, *ny = near.y, *nz = near.z, *fx = far.x, *fy = far.y, *fz = far.z;
@@ -187,7 +187,7 @@ PECTORA_WIDE void blockProducts(std::size_t count, const float* entries, std::si
   }
 }
 
-PECTORA_WIDE void diagonalProducts(std::size_t count, const float* entries, std::size_t stride, ConstVectors v, Vectors sum) {
+PECTORA_WIDE void diagonalProducts(std::size_t count, const float* entries, std::size_t stride, ConstRow<double> v, Row<double> sum) {
   const float *xx = entries, *xy = xx + stride, *xz = xy + stride, *yy = xz + stride, *yz = yy + stride, *zz = yz + stride;
   const double *x = v.x, *y = v.y, *z = v.z;
   double *sx = sum.x, *sy = sum.y, *sz = sum.z;

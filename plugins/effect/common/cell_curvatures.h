@@ -16,16 +16,9 @@ inline constexpr int kNeighbours[kNeighbourCount][3] = {{0, 0, 1},  {0, 1, -1}, 
 /// rows[k][e * stride + b + i]. `projected`: of every point of quadrature the nearest semi-definite form.
 void addCurvatures(const Run& run, const RestPack& rest, bool projected, float* const (&rows)[4], std::size_t stride);
 
-/// Three numbers for each of the nodes of a row.
-struct ConstVectors {
-  const double *x, *y, *z;
-};
-struct Vectors {
-  double *x, *y, *z;
-};
 /// near += K far and far += K^T near for `count` pairs of nodes and their nine entries; `sum` takes the first.
-void blockProducts(std::size_t count, const float* entries, std::size_t stride, ConstVectors near, ConstVectors far, Vectors sum, Vectors farSum);
+void blockProducts(std::size_t count, const float* entries, std::size_t stride, ConstRow<double> near, ConstRow<double> far, Row<double> sum, Row<double> farSum);
 /// sum += K v for the symmetric blocks.
-void diagonalProducts(std::size_t count, const float* entries, std::size_t stride, ConstVectors v, Vectors sum);
+void diagonalProducts(std::size_t count, const float* entries, std::size_t stride, ConstRow<double> v, Row<double> sum);
 
 }  // namespace pectora::cells

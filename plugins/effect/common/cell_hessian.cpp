@@ -33,8 +33,6 @@ void CellHessian::linearise(const NodeVectors& positions, bool projected) {
 
 void CellHessian::multiply(const NodeVectors& v, NodeVectors& y) const {
   const std::size_t columns = grid_.columns();
-  const auto from = [&](std::size_t i) { return ConstVectors{&v.x[i], &v.y[i], &v.z[i]}; };
-  const auto to = [&](std::size_t i) { return Vectors{&y.x[i], &y.y[i], &y.z[i]}; };
   grid_.forEachBlock([&](int, int begin, int end) {
     std::vector<double> sums(3 * columns);
     for (int l = 0; l < grid_.layers(); ++l)
@@ -42,10 +40,10 @@ void CellHessian::multiply(const NodeVectors& v, NodeVectors& y) const {
         // What a row receives from those after it is collected apart, so that no loop writes to what it reads.
         std::fill(sums.begin(), sums.end(), 0.0);
         const std::size_t here = grid_.node(l, r, 0);
-        diagonalProducts(columns, row(l, r), columns, from(here), {&sums[0], &sums[columns], &sums[2 * columns]});
+        diagonalProducts(columns, row(l, r), columns, rowOf(v, here), {&sums[0], &sums[columns], &sums[2 * columns]});
         forEachNeighbour(l, r, [&](int first, std::size_t count, const float* entries, int farLayer, int farRow, int farColumn) {
           const std::size_t far = grid_.node(farLayer, farRow, farColumn);
-          blockProducts(count, entries, columns, from(here + first), from(far), {&sums[first], &sums[columns + first], &sums[2 * columns + first]}, to(far));
+          blockProducts(count, entries, columns, rowOf(v, here + first), rowOf(v, far), {&sums[first], &sums[columns + first], &sums[2 * columns + first]}, rowOf(y, far));
         });
         for (std::size_t c = 0; c < columns; ++c) y.add(here + c, {sums[c], sums[columns + c], sums[2 * columns + c]});
       }

@@ -2,20 +2,14 @@
 // arithmetic, so its bits are the same for every instruction set.
 #pragma once
 
+#include "kernel/physics/rows.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 // A pack wider than the machine's registers is split by the compiler, and never crosses the border of a library.
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-// One copy of each loop for wide registers, chosen when the program is loaded. (Sanitizers do not survive the choice.)
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PECTORA_WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define PECTORA_WIDE
-#endif
-#define PECTORA_INLINE static inline __attribute__((always_inline))
 
 namespace pectora::cells {
 

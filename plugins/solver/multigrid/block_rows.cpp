@@ -1,15 +1,8 @@
 #include "plugins/solver/multigrid/block_rows.h"
 
-// One copy of each loop for wide registers, chosen when the program is loaded. (Sanitizers do not survive the choice.)
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PECTORA_WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define PECTORA_WIDE
-#endif
-
 namespace pectora {
 
-PECTORA_WIDE void addBlockProducts(std::size_t count, BlockRow a, bool transposed, ConstFloatRow in, FloatRow out) {
+PECTORA_WIDE void addBlockProducts(std::size_t count, BlockRow a, bool transposed, ConstRow<float> in, Row<float> out) {
   const std::size_t s = a.stride, lower = transposed ? 1 : 3, upper = transposed ? 3 : 1;   // of entry (i, j): i lower + j upper
   const float *x = in.x, *y = in.y, *z = in.z;
   const float *xx = a.entries, *xy = xx + upper * s, *xz = xx + 2 * upper * s;
@@ -24,7 +17,7 @@ PECTORA_WIDE void addBlockProducts(std::size_t count, BlockRow a, bool transpose
   }
 }
 
-PECTORA_WIDE void setSymmetricProducts(std::size_t count, BlockRow a, ConstFloatRow in, FloatRow out) {
+PECTORA_WIDE void setSymmetricProducts(std::size_t count, BlockRow a, ConstRow<float> in, Row<float> out) {
   const std::size_t s = a.stride;
   const float *x = in.x, *y = in.y, *z = in.z;
   const float *xx = a.entries, *xy = xx + s, *xz = xx + 2 * s, *yy = xx + 3 * s, *yz = xx + 4 * s, *zz = xx + 5 * s;

@@ -2,16 +2,9 @@
 // its bits are the same for every instruction set.
 #pragma once
 
-#include <cstddef>
+#include "kernel/physics/rows.h"
 
 namespace pectora {
-
-struct ConstFloatRow {
-  const float *x, *y, *z;
-};
-struct FloatRow {
-  float *x, *y, *z;
-};
 
 /// Blocks of one row: entry (i, j) of the block of column c is entries[(3 i + j) * stride + c].
 struct BlockRow {
@@ -19,9 +12,9 @@ struct BlockRow {
   std::size_t stride;
 };
 /// y += A x, column by column; `transposed`: y += A^T x.
-void addBlockProducts(std::size_t count, BlockRow a, bool transposed, ConstFloatRow x, FloatRow y);
+void addBlockProducts(std::size_t count, BlockRow a, bool transposed, ConstRow<float> x, Row<float> y);
 
 /// Symmetric blocks, in the order xx xy xz yy yz zz: y = A x.
-void setSymmetricProducts(std::size_t count, BlockRow a, ConstFloatRow x, FloatRow y);
+void setSymmetricProducts(std::size_t count, BlockRow a, ConstRow<float> x, Row<float> y);
 
 }  // namespace pectora

@@ -10,9 +10,6 @@ namespace {
 
 constexpr int kReach = 2, kWidth = 2 * kReach + 1;
 
-ConstFloatRow rowOf(const SingleVectors& v, std::size_t point) { return {&v.x[point], &v.y[point], &v.z[point]}; }
-FloatRow rowOf(SingleVectors& v, std::size_t point) { return {&v.x[point], &v.y[point], &v.z[point]}; }
-
 }  // namespace
 
 GridMatrix::GridMatrix(GridShape shape)
@@ -87,13 +84,6 @@ void GridMatrix::multiply(const SingleVectors& x, SingleVectors& y) const {
                          rowOf(x, shape_.number(o.layer, row - o.rows, first)), rowOf(y, shape_.number(o.otherLayer, row, first + o.columns)));
     }
   });
-}
-
-std::size_t GridMatrix::bytes() const {
-  std::size_t numbers = 0;
-  for (const auto& d : diagonal_) numbers += 2 * d.size();
-  for (const Offset& o : offsets_) numbers += o.blocks.size();
-  return numbers * sizeof(float);
 }
 
 void GridMatrix::multiplyInverseDiagonal(const SingleVectors& x, SingleVectors& y) const {

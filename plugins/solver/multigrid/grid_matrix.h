@@ -35,9 +35,6 @@ class GridMatrix {
   /// y = D^-1 x with D the blocks on the diagonal.
   void multiplyInverseDiagonal(const SingleVectors& x, SingleVectors& y) const;
 
-  /// What it holds on to.
-  std::size_t bytes() const;
-
   /// Calls diagonal(point, block) and coupling(a, b, block) for all of them.
   template <class D, class C>
   void forEach(D&& diagonal, C&& coupling) const;

@@ -240,12 +240,6 @@ void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& 
   }
 }
 
-std::size_t Hierarchy::bytes() const {
-  std::size_t total = 0;
-  for (const auto& level : levels_) total += level->matrix.bytes() + 12 * (level->x.size() + level->b.size() + level->residual.size() + level->step.size());
-  return total;
-}
-
 void Hierarchy::cycle(const SingleVectors& b, SingleVectors& x) { cycle(0, b, x); }
 
 void Hierarchy::cycle(std::size_t index, const SingleVectors& b, SingleVectors& x) {

@@ -22,8 +22,6 @@ class Hierarchy {
   bool isBuilt() const { return coarsest_ != nullptr; }
   /// x = M^-1 b by one cycle: additive on the finest levels, a V below. M is symmetric and positive definite.
   void cycle(const SingleVectors& b, SingleVectors& x);
-  /// What it holds on to.
-  std::size_t bytes() const;
 
  private:
   struct Level;

@@ -1,8 +1,6 @@
 // The bar moves by 2 mm from a solved state: time and force evaluations until no point is farther than 0.1 mm from rest, on the
 // paper's lattice with a free pleura, 2 mm between points. "error_mm" is the largest distance from the same wall solved to
 // 1e-8; "forces_of_time" the time over that of one force evaluation in the same run.
-#include "plugins/solver/common/quasi_static.h"
-#include "plugins/solver/multigrid/multigrid.h"
 #include "tests/plugins/solver/multigrid/walls.h"
 
 #include "kernel/physics/workers.h"
@@ -14,21 +12,6 @@
 
 namespace {
 using namespace pectora;
-
-struct QuietHost final : Host {
-  void progress(double, const std::string&) override {}
-  bool cancelled() const override { return false; }
-  void warn(const std::string&) override {}
-  void info(const std::string&) override {}
-  std::string pluginFolder() const override { return ""; }
-};
-
-std::unique_ptr<Session> multigrid(const System& system, double tolerance, double accuracy) {
-  QuasiStaticSettings settings;
-  settings.tolerance = tolerance;
-  const std::shared_ptr<Metric> metric = makeMultigridMetric(system);
-  return makeQuasiStatic(system, settings, makeMultigridMinimiser(system, metric, 5), 200, {.metric = metric, .forcing = 0.1, .accuracy = accuracy});
-}
 
 // A wall with its solved states before and after the tick; made once a size.
 struct Solved {

@@ -1,5 +1,6 @@
 // Second derivatives of the spring terms, against the first.
-#include "kernel/physics/hessian.h"
+#include "tests/kernel/physics/derivatives.h"
+
 #include "kernel/physics/springs.h"
 #include "kernel/physics/workers.h"
 
@@ -7,31 +8,10 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 
 using namespace pectora;
 
 namespace {
-
-NodeVectors noise(std::size_t nodes, double amplitude, unsigned seed) {
-  NodeVectors v(nodes);
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> jitter(-amplitude, amplitude);
-  for (std::size_t i = 0; i < nodes; ++i) v.set(i, {jitter(random), jitter(random), jitter(random)});
-  return v;
-}
-
-NodeVectors sum(const NodeVectors& a, double s, const NodeVectors& b) {
-  NodeVectors c(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) c.set(i, a[i] + b[i] * s);
-  return c;
-}
-
-double inner(const NodeVectors& a, const NodeVectors& b) {
-  double total = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) total += dot(a[i], b[i]);
-  return total;
-}
 
 // A crooked two-layer grid with an anchor a pleura point, both kinds of terms, and one kind of spring that hardly pushes.
 System crookedWall(int rows, int columns) {
@@ -54,19 +34,6 @@ System crookedWall(int rows, int columns) {
   for (std::size_t j = 0; j < layer; ++j) springs.push_back({layer + j, 2 * layer + j, 0.5 + 0.01 * double(j)});
   system.terms.push_back(makeSpringTerm("attachment", system, springs));
   return system;
-}
-
-NodeVectors gradientAt(const System& system, const NodeVectors& x) {
-  NodeVectors gradient(x.size());
-  double largest = 0;
-  system.evaluate(x, gradient, largest);
-  return gradient;
-}
-
-NodeVectors product(const Hessian& hessian, const NodeVectors& v) {
-  NodeVectors y(v.size());
-  hessian.multiply(v, y);
-  return y;
 }
 
 }  // namespace
@@ -148,18 +115,7 @@ TEST(Hessian, IsTheSumOfItsBlocks) {
   const auto hessian = makeHessian(system);
   hessian->linearise(sum(system.rest, 1, noise(system.rest.size(), 4, 1)), true);
   const NodeVectors v = noise(system.rest.size(), 1, 2);
-  std::vector<Symmetric3> diagonal(v.size());
-  hessian->addDiagonal(diagonal);
-  NodeVectors y(v.size());
-  for (std::size_t i = 0; i < v.size(); ++i) y.set(i, diagonal[i] * v[i]);
-  hessian->forEachCoupling([&](std::size_t a, std::size_t b, const Matrix3& block) {
-    const auto& m = block.m;
-    const Vec3 p = v[a], q = v[b];
-    y.add(a, {m[0][0] * q.x + m[0][1] * q.y + m[0][2] * q.z, m[1][0] * q.x + m[1][1] * q.y + m[1][2] * q.z,
-              m[2][0] * q.x + m[2][1] * q.y + m[2][2] * q.z});
-    y.add(b, {m[0][0] * p.x + m[1][0] * p.y + m[2][0] * p.z, m[0][1] * p.x + m[1][1] * p.y + m[2][1] * p.z,
-              m[0][2] * p.x + m[1][2] * p.y + m[2][2] * p.z});
-  });
+  const NodeVectors y = productOfBlocks(*hessian, v);
   const NodeVectors expected = product(*hessian, v);
   for (std::size_t i = 0; i < system.freeNodes; ++i) EXPECT_LT(distance(y[i], expected[i]), 3e-6) << i;   // single precision
 }

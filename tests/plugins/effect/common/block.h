@@ -3,31 +3,9 @@
 
 #include "plugins/effect/common/cells.h"
 
-#include "kernel/physics/hessian.h"
-
-#include <random>
+#include "tests/kernel/physics/derivatives.h"
 
 namespace pectora {
-
-inline NodeVectors noise(std::size_t nodes, double amplitude, unsigned seed) {
-  NodeVectors v(nodes);
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> jitter(-amplitude, amplitude);
-  for (std::size_t i = 0; i < nodes; ++i) v.set(i, {jitter(random), jitter(random), jitter(random)});
-  return v;
-}
-
-inline NodeVectors sum(const NodeVectors& a, double s, const NodeVectors& b) {
-  NodeVectors c(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) c.set(i, a[i] + b[i] * s);
-  return c;
-}
-
-inline double inner(const NodeVectors& a, const NodeVectors& b) {
-  double total = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) total += dot(a[i], b[i]);
-  return total;
-}
 
 /// A block of layers x rows x columns nodes, width x height x depth mm (x, y, z). All nodes free, without terms.
 inline System block(int layers, int rows, int columns, Vec3 size) {
@@ -45,18 +23,5 @@ inline System block(int layers, int rows, int columns, Vec3 size) {
 }
 
 inline std::size_t cellsOf(const System& s) { return std::size_t(s.layers - 1) * (s.rows - 1) * (s.columns - 1); }
-
-inline NodeVectors gradientAt(const System& system, const NodeVectors& x) {
-  NodeVectors gradient(x.size());
-  double largest = 0;
-  system.evaluate(x, gradient, largest);
-  return gradient;
-}
-
-inline NodeVectors product(const Hessian& hessian, const NodeVectors& v) {
-  NodeVectors y(v.size());
-  hessian.multiply(v, y);
-  return y;
-}
 
 }  // namespace pectora

@@ -128,18 +128,7 @@ TEST_P(CellKinds, HessianIsTheSumOfItsBlocksAlsoInSinglePrecision) {
   const auto hessian = makeHessian(system);
   hessian->linearise(sum(system.rest, 1, noise(system.rest.size(), 2, 1)), true);
   const NodeVectors v = noise(system.rest.size(), 1, 2), expected = product(*hessian, v);
-  std::vector<Symmetric3> diagonal(v.size());
-  hessian->addDiagonal(diagonal);
-  NodeVectors y(v.size());
-  for (std::size_t i = 0; i < v.size(); ++i) y.set(i, diagonal[i] * v[i]);
-  hessian->forEachCoupling([&](std::size_t a, std::size_t b, const Matrix3& block) {
-    const auto& m = block.m;
-    const Vec3 p = v[a], q = v[b];
-    y.add(a, {m[0][0] * q.x + m[0][1] * q.y + m[0][2] * q.z, m[1][0] * q.x + m[1][1] * q.y + m[1][2] * q.z,
-              m[2][0] * q.x + m[2][1] * q.y + m[2][2] * q.z});
-    y.add(b, {m[0][0] * p.x + m[1][0] * p.y + m[2][0] * p.z, m[0][1] * p.x + m[1][1] * p.y + m[2][1] * p.z,
-              m[0][2] * p.x + m[1][2] * p.y + m[2][2] * p.z});
-  });
+  const NodeVectors y = productOfBlocks(*hessian, v);
   SingleVectors single(v.size()), product(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) single.set(i, v[i]);
   hessian->multiplySingle(single, product);

@@ -2,7 +2,6 @@
 #include "plugins/solver/multigrid/multigrid.h"
 
 #include "plugins/solver/common/newton.h"
-#include "plugins/solver/common/quasi_static.h"
 #include "tests/plugins/solver/multigrid/walls.h"
 #include "tests/plugins/solver/wall.h"
 
@@ -11,21 +10,6 @@
 using namespace pectora;
 
 namespace {
-
-struct QuietHost final : Host {
-  void progress(double, const std::string&) override {}
-  bool cancelled() const override { return false; }
-  void warn(const std::string&) override {}
-  void info(const std::string&) override {}
-  std::string pluginFolder() const override { return ""; }
-};
-
-std::unique_ptr<Session> multigrid(const System& system, double tolerance, double accuracy = 0) {
-  QuasiStaticSettings settings;
-  settings.tolerance = tolerance;
-  const std::shared_ptr<Metric> metric = makeMultigridMetric(system);
-  return makeQuasiStatic(system, settings, makeMultigridMinimiser(system, metric, 5), 200, {.metric = metric, .forcing = 0.1, .accuracy = accuracy});
-}
 
 double largestDistance(const NodeVectors& a, const NodeVectors& b, std::size_t count) {
   double largest = 0;

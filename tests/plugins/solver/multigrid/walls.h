@@ -1,6 +1,9 @@
 // Fine walls, in which many points span the reach of the bar.
 #pragma once
 
+#include "plugins/solver/common/quasi_static.h"
+#include "plugins/solver/multigrid/multigrid.h"
+
 #include "kernel/physics/springs.h"
 
 #include <cmath>
@@ -48,6 +51,22 @@ inline Drive bump(const System& system, double height) {
     drive.frames.push_back(std::move(frame));
   }
   return drive;
+}
+
+struct QuietHost final : Host {
+  void progress(double, const std::string&) override {}
+  bool cancelled() const override { return false; }
+  void warn(const std::string&) override {}
+  void info(const std::string&) override {}
+  std::string pluginFolder() const override { return ""; }
+};
+
+// As the plugin makes it; `accuracy` in mm, 0: by the tolerance alone.
+inline std::unique_ptr<Session> multigrid(const System& system, double tolerance, double accuracy = 0) {
+  QuasiStaticSettings settings;
+  settings.tolerance = tolerance;
+  const std::shared_ptr<Metric> metric = makeMultigridMetric(system);
+  return makeQuasiStatic(system, settings, makeMultigridMinimiser(system, metric, 5), 200, {.metric = metric, .forcing = 0.1, .accuracy = accuracy});
 }
 
 }  // namespace pectora
