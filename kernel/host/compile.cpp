@@ -1,8 +1,6 @@
 #include "kernel/host/compile.h"
 
 #include "kernel/host/settings.h"
-#include "kernel/stage/effect.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -46,6 +44,7 @@ void checkIslands(const System& system) {
     root[std::min(one, other)] = std::max(one, other);
   };
   for (const auto& term : system.terms) {
+    if (!term->holds()) continue;
     if (term->hasSprings()) {
       term->forEachSpring([&](const Spring& s) { join(s.a, s.b); });
       continue;
@@ -70,7 +69,7 @@ void checkIslands(const System& system) {
 
 }  // namespace
 
-Compiled compile(const Scene& scene, Registry& registry) {
+Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
   Compiled compiled;
   compiled.system = std::make_unique<System>();
   System& system = *compiled.system;
@@ -109,6 +108,11 @@ Compiled compile(const Scene& scene, Registry& registry) {
     use.reason = part.emptyBecause;
     use.springs = part.springs.size();
     use.notes = part.notes;
+    if (part.loadInCt) {
+      compiled.isLoadedInCt = true;
+      if (loads == CtLoads::alone) part.terms.clear();
+      if (loads != CtLoads::off) part.terms.push_back(part.loadInCt(loads == CtLoads::alone ? 1 : -1));
+    }
     for (const auto& term : part.terms) {
       use.hasHessian = use.hasHessian && term->hasHessian();
       use.hasSprings = use.hasSprings && term->hasSprings();
@@ -121,6 +125,8 @@ Compiled compile(const Scene& scene, Registry& registry) {
     stencil.insert(stencil.end(), part.stencil.begin(), part.stencil.end());
     springs.insert(springs.end(), part.springs.begin(), part.springs.end());
     for (auto& term : part.terms) others.push_back(std::move(term));
+    for (const Vec3& guide : part.guides) system.rest.append(guide);
+    compiled.steering.push_back({std::move(part.steering), part.guides.size()});
     compiled.effects.push_back(std::move(use));
   }
   if (!stencil.empty()) system.terms.push_back(makeLatticeTerm(stencilNames, system, std::move(stencil)));
@@ -139,17 +145,38 @@ Compiled compile(const Scene& scene, Registry& registry) {
   return compiled;
 }
 
-Drive makeDrive(const Scene& scene, const Plan& plan) {
+BarLoad shareLift(const Compiled& compiled, const Plan& plan) {
+  double chest = 0, bar = INFINITY;
+  for (const auto& [steering, guides] : compiled.steering) {
+    if (steering.chestStiffness) chest += steering.chestStiffness(plan);
+    if (steering.barStiffness) bar = 1 / (1 / bar + 1 / steering.barStiffness(plan));
+  }
+  BarLoad load;
+  if (!(chest > 0)) return load;
+  load.part = 1 / (1 + chest / bar);
+  load.force = chest * load.part * plan.lift;
+  return load;
+}
+
+Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan) {
+  const double reached = shareLift(compiled, plan).part;
   Drive drive;
   const std::size_t frames = std::max<std::size_t>(2, plan.frames.size());
   for (std::size_t f = 0; f < frames; ++f) {
+    const double t = double(f) / double(frames - 1);
     std::vector<Vec3> positions;
-    positions.reserve(scene.anchors.size());
+    positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
     for (const Anchor& anchor : scene.anchors) {
-      positions.push_back(plan.moved(anchor, double(f) / double(frames - 1)));
-      if (!isFinite(positions.back()))
-        throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", positions.size() - 1));
+      positions.push_back(plan.moved(anchor, reached * t));
+      for (const auto& [steering, guides] : compiled.steering)
+        if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
     }
+    for (const auto& [steering, guides] : compiled.steering)
+      if (guides > 0)
+        for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      if (!isFinite(positions[i]))
+        throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));
     drive.frames.push_back(std::move(positions));
   }
   return drive;

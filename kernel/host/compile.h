@@ -2,8 +2,7 @@
 #pragma once
 
 #include "kernel/host/registry.h"
-#include "kernel/physics/system.h"
-#include "kernel/value/plan.h"
+#include "kernel/stage/effect.h"
 
 #include <cmath>
 
@@ -25,13 +24,33 @@ struct EffectUse {
 struct Compiled {
   std::unique_ptr<System> system;
   std::vector<EffectUse> effects;
+  bool isLoadedInCt = false;   ///< an effect has loads that the CT shows the chest under
+  struct Guided {
+    Steering steering;
+    std::size_t guides = 0;    ///< how many driven nodes are its own; they follow the anchors in this order
+  };
+  std::vector<Guided> steering;
+};
+
+/// What becomes of the loads that the CT shows the chest under.
+enum class CtLoads {
+  off,        ///< the chest is free of them: only those after the operation act, on a scene that is the shape without load
+  alone,      ///< only they act
+  countered,  ///< those after the operation act, less those of the CT: right to first order on the scene as the CT shows it
 };
 
 /// Opens the effects that the scene calls, and no others, and builds their terms; all stencils share one term.
 /// Throws Error if a stiffness or mass is not positive and finite, or a point is held by nothing.
-Compiled compile(const Scene& scene, Registry& registry);
+Compiled compile(const Scene& scene, Registry& registry, CtLoads loads = CtLoads::off);
 
-/// Where the anchors go while the plan is carried out.
-Drive makeDrive(const Scene& scene, const Plan& plan);
+/// How the bar and the chest share the lift.
+struct BarLoad {
+  double part = 1;       ///< of the planned way that the sternum goes
+  double force = NAN;    ///< of the chest on the bar, N; NAN if no effect knows the chest's stiffness
+};
+BarLoad shareLift(const Compiled& compiled, const Plan& plan);
+
+/// Where the driven nodes go while the plan is carried out.
+Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan);
 
 }  // namespace pectora

@@ -1,5 +1,7 @@
 #include "kernel/host/warm.h"
 
+#include "kernel/host/rest_shape.h"
+
 #include <fmt/format.h>
 
 namespace pectora {
@@ -18,10 +20,18 @@ void checkNeeds(const std::string& solver, const Needs& needs, const std::vector
 }  // namespace
 
 WarmSolve::WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::unique_ptr<Solver> solver, Registry& registry, Host& host)
-    : scene_(std::move(scene)), solver_(std::move(solver)), compiled_(compile(*scene_, registry)) {
+    : scene_(std::move(scene)), rest_(scene_), solver_(std::move(solver)), compiled_(compile(*scene_, registry)) {
   for (const EffectUse& use : compiled_.effects)
     if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
   checkNeeds(id, solver_->needs(), compiled_.effects);
+  if (!compiled_.isLoadedInCt) return;
+  if (const auto found = findRestShape(*scene_, *solver_, registry, host)) {
+    rest_ = found;
+    compiled_ = compile(*rest_, registry);
+  } else {
+    host.info("no shape of the wall comes to rest as the CT shows it; the loads after the operation, less those of the CT, act on the CT's shape");
+    compiled_ = compile(*scene_, registry, CtLoads::countered);
+  }
 }
 
 void WarmSolve::startFrom(const Motion& motion) {
@@ -30,7 +40,7 @@ void WarmSolve::startFrom(const Motion& motion) {
     return fmt::format("{} layers of {} points, {} anchors", layers, points, anchors);
   };
   const std::string given = counts(motion.between.size() + 2, motion.outer.size(), motion.anchors.size());
-  const std::string allowed = counts(scene_->between.size() + 2, system.points(), scene_->anchors.size());
+  const std::string allowed = counts(scene_->between.size() + 2, system.points(), system.rest.size() - system.freeNodes);
   if (given != allowed) throw Error("the motion to start from belongs to another scene").of("start").given(given).allowed(allowed);
   start_ = NodeVectors(system.rest.size());
   for (int l = 0; l < system.layers; ++l)
@@ -44,7 +54,7 @@ void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions)
 
 std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   if (!session_) session_ = solver_->prepare(*compiled_.system, host);
-  const Drive drive = makeDrive(*scene_, plan);
+  const Drive drive = makeDrive(*rest_, compiled_, plan);
   Solution solution = session_->solve(drive, start_.size() ? &start_ : nullptr, host);
 
   auto motion = std::make_shared<Motion>();
@@ -60,6 +70,9 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   for (int l = 1; l + 1 < system.layers; ++l) motion->between.push_back(layerOf(l));
   motion->inner = layerOf(system.layers - 1);
   motion->anchors = drive.frames.back();
+  const BarLoad load = shareLift(compiled_, plan);
+  motion->lift = load.part * plan.lift;
+  motion->barForce = load.force;
   motion->status = solution.status;
   motion->message = std::move(solution.message);
   motion->iterations = solution.iterations;

@@ -27,6 +27,7 @@ class WarmSolve {
 
  private:
   std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const Scene> rest_;   // without the loads that the CT shows it under; the scene itself if there are none
   std::unique_ptr<Solver> solver_;
   Compiled compiled_;
   std::unique_ptr<Session> session_;   // made by the first solve

@@ -10,7 +10,8 @@
 
 namespace pectora {
 
-/// One vector a node, as structure of arrays. Nodes are numbered layer by layer from skin to pleura, then the anchors.
+/// One vector a node, as structure of arrays. Nodes are numbered layer by layer from skin to pleura, then the anchors, then
+/// the guides of effects.
 struct NodeVectors {
   std::vector<double> x, y, z;
 
@@ -20,6 +21,7 @@ struct NodeVectors {
   Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
   void set(std::size_t i, Vec3 v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
   void add(std::size_t i, Vec3 v) { x[i] += v.x, y[i] += v.y, z[i] += v.z; }
+  void append(Vec3 v) { x.push_back(v.x), y.push_back(v.y), z.push_back(v.z); }
   void clear();
 };
 
@@ -57,12 +59,15 @@ class Term {
   /// (science: Gershgorin bound of the Hessian's rows), N/mm.
   virtual void addStiffnessBound(std::vector<double>& bound) const = 0;
 
+  /// False for a term that may be without force wherever a point is, such as contact: it keeps nothing in its place.
+  virtual bool holds() const { return true; }
+
   /// Offers, for solvers that need more than a gradient. Each comes with a word on whether it is there, so that a solver
   /// can be refused before any work.
   virtual bool hasHessian() const { return false; }
   /// The second derivative, not yet taken anywhere. The term must outlive it. Null without one.
   virtual std::unique_ptr<Hessian> makeHessian() const;
-  /// True if the term is nothing but springs.
+  /// True if the term is nothing but springs, or forces that never change.
   virtual bool hasSprings() const { return false; }
   /// Calls `visit` for each of them, always in one order.
   virtual void forEachSpring(const std::function<void(const Spring&)>& /*visit*/) const {}

@@ -3,15 +3,31 @@
 
 #include "kernel/physics/springs.h"
 #include "kernel/stage/plugin.h"
-#include "kernel/value/scene.h"
+#include "kernel/value/plan.h"
 
 namespace pectora {
+
+/// What an effect changes in how the plan moves the bodies. Called with each plan; what is not set changes nothing.
+struct Steering {
+  /// The bar and the chest share the lift as springs in series: stiffness of either against the deepest point's way, N/mm.
+  std::function<double(const Plan&)> barStiffness, chestStiffness;
+  /// How far an anchor goes beside its way in the plan, mm, in equal parts from the beginning to the end.
+  std::function<Vec3(const Plan&, const Anchor&)> displacement;
+  /// Where the effect's guides lie after part t of the plan.
+  std::function<std::vector<Vec3>(const Plan&, double t)> guides;
+};
 
 /// What an effect adds to the problem. Springs are data, and all effects' stencils are fused into one term.
 struct Contribution {
   std::vector<StencilSpring> stencil;
   std::vector<NodeSpring> springs;
   std::vector<std::unique_ptr<Term>> terms;
+  /// Makes a load that the CT shows the chest under, times a factor; called while contribute's arguments live. The scene's
+  /// shape is then at rest under it, and the shape without it is found before `terms` act.
+  std::function<std::unique_ptr<Term>(double factor)> loadInCt;
+  /// Driven nodes of its own, as long as no plan is known; they are numbered from system.rest.size() on.
+  std::vector<Vec3> guides;
+  Steering steering;
   std::string emptyBecause;             ///< why it adds nothing to this scene; it then drops out
   std::vector<std::string> notes;       ///< what was computed on the way, such as a calibrated spring constant
 };
@@ -21,6 +37,7 @@ class Effect {
   virtual ~Effect() = default;
   virtual void describe(Visitor& visitor) = 0;
   /// `system` has its nodes and masses, but no terms yet; System::node and anchorNode number the scene's points and anchors.
+  /// What it returns refers to neither.
   virtual Contribution contribute(const Scene& scene, const System& system) = 0;
 };
 

@@ -61,7 +61,9 @@ std::vector<Fact> Motion::facts() const {
           {"energy", energy, "N mm"},
           {"energy_growth", energyGrowth, ""},
           {"inverted_prisms", double(invertedPrisms), ""},
-          {"greatest_skin_displacement", greatest, "mm"}};
+          {"greatest_skin_displacement", greatest, "mm"},
+          {"lift", lift, "mm"},
+          {"bar_force", barForce, "N"}};
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Motion::parts() const {

@@ -1,6 +1,7 @@
 // A flat wall whose anchors are pushed forwards, and solvers on it as scripts see them.
 #pragma once
 
+#include "kernel/host/compile.h"
 #include "tests/kernel/host/helpers.h"
 
 #include "kernel/value/motion.h"

@@ -1,0 +1,17 @@
+// What the costal cartilages do against the lift.
+#pragma once
+
+#include "kernel/value/plan.h"
+
+namespace pectora {
+
+/// Stiffness of the chest against the way of the deepest point, N/mm. Each cartilage is a beam that is clamped at its rib and
+/// guided at its medial end, k = 12 E I / L^3 of its length at rest, in series with its rib; it counts with the square of its
+/// end's way over that of the deepest point. `youngsModulus` in N/mm^2, `secondMoment` I in mm^4, `ribStiffness` of a rib's front
+/// end in N/mm. 0 for a plan that lifts nothing.
+double chestStiffness(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness);
+
+/// I of an ellipse about the axis across `depth`, mm^4.
+double secondMomentOfEllipse(double height, double depth);
+
+}  // namespace pectora
