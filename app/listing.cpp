@@ -110,7 +110,8 @@ std::string explanationText(const Explanation& e) {
     const auto figure = [](double mm) { return std::isnan(mm) ? std::string("-") : fmt::format("{:.2f}", mm); };
     text += fmt::format("{:<22} {:<6} {:>9} {:>10} {:>8}  {}\n", use.id, use.isActive ? "yes" : "no", use.springs, figure(use.changeRms), figure(use.changeMax), notes);
   }
-  text += "RMS and max: how far the skin lies elsewhere without the effect, over all skin points, probed by a rough solve\n";
+  text += fmt::format("RMS and max: how far the skin lies elsewhere without the effect, where the operation moves it by more than 3 mm,\n"
+                      "probed by rough solves{}\n", std::isnan(e.uncertainty) ? "" : fmt::format("; the RMS is right to about {:.2f} mm", e.uncertainty));
   text += fmt::format("\n{:<44} {}\n", "term (all stencils share one pass)", "ms an evaluation, measured here");
   for (const auto& [name, milliseconds] : e.termMilliseconds) text += fmt::format("{:<44} {:.3f}\n", name, milliseconds);
   return text;

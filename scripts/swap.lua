@@ -26,7 +26,7 @@ print(string.format("%d skin points, lift %g mm, tolerance %g; reference: newton
 -- A motion that is not at rest is listed too: that is what is to be seen here.
 local row = "%-24s %10s %10s %9s %10s %10s %9s  %s"
 print(row:format("solver", "max, mm", "RMS, mm", "s", "iterations", "forces", "residual", "status"))
-for _, s in ipairs{ { "newton" }, { "multigrid" }, { "lbfgs" }, { "projective" }, { "implicit" }, { "implicit", "bdf2" }, { "semi_implicit" }, { "verlet" } } do
+for _, s in ipairs{ { "newton" }, { "multigrid" }, { "lbfgs" }, { "projective" }, { "implicit" }, { "implicit", "bdf2" }, { "semi_implicit" }, { "verlet" }, { "xpbd" } } do
   local name, scheme = s[1], s[2]
   if not p.only or p.only == name then
     local motion = solver[name](scene, plan, { tolerance = p.tolerance, scheme = scheme, accept_unconverged = true })

@@ -10,15 +10,15 @@ namespace pectora {
 
 /// What became of one effect that a scene called.
 struct EffectUse {
-  std::string id;
+  std::string id = {};
   bool isActive = true;
-  std::string reason;               ///< why it dropped out
+  std::string reason = {};               ///< why it dropped out
   std::size_t springs = 0;          ///< pairs of points that it joins
-  std::vector<std::string> notes;   ///< such as calibrated constants
+  std::vector<std::string> notes = {};   ///< such as calibrated constants
   bool hasHessian = true;           ///< whether all its terms offer one
   bool hasSprings = true;           ///< whether it is nothing but springs
   double changeRms = NAN, changeMax = NAN;   ///< mm of the skin, as probed by leaving it out; only `explain` asks
-  std::string notProbed;            ///< why there is no such figure
+  std::string notProbed = {};            ///< why there is no such figure
 };
 
 struct Compiled {

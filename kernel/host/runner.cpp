@@ -13,14 +13,10 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 
 namespace pectora {
 namespace {
-
-// How `explain` probes effects: roughly, and at little cost.
-constexpr const char* kProbeSolver = "solver.verlet";
-constexpr double kProbeTolerance = 1e-3;
-constexpr int kProbeSteps = 2000;
 
 const std::vector<Port> kSolverPorts{{"scene", {Scene::kName}}, {"plan", {Plan::kName}}, {"start", {Motion::kName}, true}};
 const std::vector<Port> kNoPorts;
@@ -242,11 +238,20 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
 
 std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept,
                                             Host& host) {
-  const auto scene = std::dynamic_pointer_cast<const Scene>(inputs[0].front().value);
+  auto scene = std::dynamic_pointer_cast<const Scene>(inputs[0].front().value);
   const auto plan = std::dynamic_pointer_cast<const Plan>(inputs[1].front().value);
+  std::optional<Probe> probe;
+  if (scene->effectAccuracy > 0) {
+    Choice choice = chooseEffects(*scene, *plan, registry_, host);
+    for (const EffectUse& use : choice.probe.effects)
+      host.info(fmt::format("{} {}{}", use.id, use.isActive ? "runs" : "drops out: " + use.reason,
+                            std::isnan(use.changeRms) ? "" : fmt::format(" ({:.2f} mm RMS)", use.changeRms)));
+    scene = choice.scene;
+    probe = std::move(choice.probe);
+  }
   WarmSolve warm(scene, plugin.descriptor->id, std::move(solver), registry_, host);
   if (explanations) {
-    explain(plugin, warm.compiled(), *scene, *plan, host);
+    explain(plugin, warm.compiled(), *scene, probe ? *probe : probeEffects(*scene, *plan, registry_, host));
     throw Explained();
   }
   if (!inputs[2].empty()) warm.startFrom(*std::dynamic_pointer_cast<const Motion>(inputs[2].front().value));
@@ -267,13 +272,14 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_pt
   return motion;
 }
 
-void Runner::explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Plan& plan, Host& host) {
+void Runner::explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Probe& probe) {
   Explanation e;
   e.solver = plugin.descriptor->id;
   e.skinPoints = scene.points();
   e.freeNodes = compiled.system->freeNodes;
   e.anchors = scene.anchors.size();
-  e.effects = compiled.effects;
+  e.effects = probe.effects;
+  e.uncertainty = probe.uncertainty;
   // The best of three evaluations of each term.
   NodeVectors gradient(compiled.system->rest.size());
   for (const auto& term : compiled.system->terms) {
@@ -285,46 +291,7 @@ void Runner::explain(const Plugin& plugin, const Compiled& compiled, const Scene
     }
     e.termMilliseconds.emplace_back(term->name(), best);
   }
-  probe(scene, plan, e.effects, host);
   explanations->push_back(std::move(e));
-}
-
-// What each effect changes: the skin with and without it, both solved roughly.
-void Runner::probe(const Scene& scene, const Plan& plan, std::vector<EffectUse>& effects, Host& host) {
-  if (!registry_.has(kProbeSolver)) return;
-  const auto skin = [&](const std::vector<std::shared_ptr<const EffectCall>>& calls) {
-    auto part = std::make_shared<Scene>(scene);
-    part->effects = calls;
-    auto solver = registry_.open(kProbeSolver).descriptor->makeSolver();
-    applySettings({{"tolerance", kProbeTolerance}, {"max_iterations", double(kProbeSteps)}}, [&](Visitor& v) { solver->describe(v); });
-    const auto motion = WarmSolve(part, kProbeSolver, std::move(solver), registry_, host).solve(plan, host);
-    if (motion->status != SolveStatus::converged) throw Error("does not come to rest");
-    return motion->outer;
-  };
-  const auto reasonOf = [](const Error& error) { return std::string(error.what()).substr(0, std::string(error.what()).find('\n')); };
-  try {
-    const std::vector<Vec3> all = skin(scene.effects);
-    for (std::size_t i = 0; i < effects.size(); ++i) {
-      if (!effects[i].isActive) continue;
-      auto others = scene.effects;
-      others.erase(others.begin() + std::ptrdiff_t(i));
-      try {
-        const std::vector<Vec3> without = skin(others);
-        double sum = 0, largest = 0;
-        for (std::size_t p = 0; p < all.size(); ++p) {
-          const double d = distance(all[p], without[p]);
-          sum += d * d;
-          largest = std::max(largest, d);
-        }
-        effects[i].changeRms = std::sqrt(sum / double(all.size()));
-        effects[i].changeMax = largest;
-      } catch (const Error& error) {
-        effects[i].notProbed = "without it: " + reasonOf(error);
-      }
-    }
-  } catch (const Error& error) {
-    for (EffectUse& use : effects) use.notProbed = "the scene " + reasonOf(error);
-  }
 }
 
 }  // namespace pectora

@@ -1,7 +1,7 @@
 // Runs stages: checks settings and inputs, attaches provenance, answers from the cache.
 #pragma once
 
-#include "kernel/host/compile.h"
+#include "kernel/host/probe.h"
 #include "kernel/host/registry.h"
 #include "kernel/host/settings.h"
 #include "kernel/stage/solver.h"
@@ -31,6 +31,7 @@ struct Explanation {
   std::string solver;
   std::size_t skinPoints = 0, freeNodes = 0, anchors = 0;
   std::vector<EffectUse> effects;
+  double uncertainty = NAN;   ///< of what each changes, mm
   std::vector<std::pair<std::string, double>> termMilliseconds;   ///< one evaluation of each term, measured here
 };
 /// Thrown in place of solving when a runner only explains.
@@ -69,8 +70,7 @@ class Runner {
   std::vector<Handle> fromCache(const std::string& key);
   void keep(const std::string& key, const std::vector<Handle>& handles);
   std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host);
-  void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Plan& plan, Host& host);
-  void probe(const Scene& scene, const Plan& plan, std::vector<EffectUse>& effects, Host& host);
+  void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Probe& probe);
 
   Registry& registry_;
   Messages& messages_;

@@ -2,15 +2,30 @@
 #include "kernel/script/state.h"
 
 #include "kernel/host/suggest.h"
+#include "kernel/value/scene.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
 namespace pectora::script {
 namespace {
 
-// Adds the handle, or list of handles, at a stack index to the inputs of a port.
+// Adds every installed effect that a list does not name yet, with its defaults.
+void addAllEffects(lua_State* lua, std::vector<Handle>& inputs) {
+  ScriptState& state = ScriptState::of(lua);
+  for (const std::string& id : state.registry.ids()) {
+    if (!id.starts_with("effect.")) continue;
+    const bool isThere = std::any_of(inputs.begin(), inputs.end(), [&](const Handle& h) { return dynamic_cast<const EffectCall&>(*h.value).id == id; });
+    if (!isThere) inputs.push_back(state.runner.run(id, {}, {}).front());
+  }
+}
+
+// Adds the handle, or list of handles, at a stack index to the inputs of a port. Of effects, "auto" alone or as the last of a list
+// stands for all that are installed.
 void takeInput(lua_State* lua, int index, const Port& port, std::vector<Handle>& inputs) {
+  const auto isAuto = [&](int i) { return port.isList && port.kinds.front() == std::string(EffectCall::kName) && lua_type(lua, i) == LUA_TSTRING && lua_tostring(lua, i) == std::string("auto"); };
+  if (isAuto(index)) return addAllEffects(lua, inputs);
   if (const Handle* handle = toHandle(lua, index)) {
     inputs.push_back(*handle);
     return;
@@ -21,6 +36,11 @@ void takeInput(lua_State* lua, int index, const Port& port, std::vector<Handle>&
   for (lua_Integer i = 1; i <= length; ++i) {
     lua_geti(lua, index, i);
     const Handle* handle = toHandle(lua, -1);
+    if (!handle && i == length && isAuto(-1)) {
+      addAllEffects(lua, inputs);
+      lua_pop(lua, 1);
+      return;
+    }
     if (!handle) throw Error("every entry of this list must be a value that a stage returned").of(port.name);
     inputs.push_back(*handle);
     lua_pop(lua, 1);

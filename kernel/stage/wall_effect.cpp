@@ -1,8 +1,14 @@
 #include "kernel/stage/wall_effect.h"
 
+#include "kernel/stage/layer_effect.h"
+
 #include <fmt/format.h>
 
 namespace pectora {
+
+std::string WallSprings::emptyBecause(const Scene& scene) {
+  return !scene.cellTissue.empty() && calls(scene, "effect.tissue") ? "the wall is a solid: effect.tissue stands for it" : "";
+}
 
 CrossStiffness WallSprings::calibrate(const Scene& scene, std::vector<std::string>& notes) const {
   const CrossStiffness cross = calibrateCross(1.25e-3 * youngsModulus / (1 + poissonsRatio), scene.rowSpacing, scene.columnSpacing, scene.thickness);

@@ -17,6 +17,8 @@ struct WallSprings {
     v.real("poissons_ratio", poissonsRatio, "", {0.25, 0.4999}, {0.25, 0.49}, "Poisson's ratio of the tissue: springs alone have 1/4; above it they leave the rest to effect.volume, called with the same");
     v.real("stiffness", stiffness, "N/mm", {0, 1e12}, {0, 1}, "Spring constant given by hand; 0: from Young's modulus");
   }
+  /// Why springs through the wall have no place in a scene; empty if they have.
+  static std::string emptyBecause(const Scene& scene);
   /// The calibrated constants, N/mm; a note where the wall is too thick for the spacing. Springs made for E_s have the shear
   /// modulus E_s / 2.5, so they aim at E_s = 2.5 mu = 1.25 E / (1 + nu).
   CrossStiffness calibrate(const Scene& scene, std::vector<std::string>& notes) const;

@@ -15,6 +15,8 @@ class Cross final : public Effect {
 
   Contribution contribute(const Scene& scene, const System&) override {
     Contribution part;
+    part.emptyBecause = WallSprings::emptyBecause(scene);
+    if (!part.emptyBecause.empty()) return part;
     const CrossStiffness k = wall_.calibrate(scene, part.notes);
     double least = INFINITY, greatest = 0;
     for (int r = -2; r <= 2; ++r) {

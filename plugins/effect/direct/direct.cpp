@@ -12,6 +12,8 @@ class Direct final : public Effect {
 
   Contribution contribute(const Scene& scene, const System&) override {
     Contribution part;
+    part.emptyBecause = WallSprings::emptyBecause(scene);
+    if (!part.emptyBecause.empty()) return part;
     const double k = wall_.stiffness > 0 ? wall_.stiffness : wall_.calibrate(scene, part.notes).stiffness[12];
     part.stencil = {{Layer::outer, Layer::inner, 0, 0, k}};
     part.notes.push_back(fmt::format("k = {:.4g} N/mm", k));

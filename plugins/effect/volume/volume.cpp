@@ -1,7 +1,7 @@
 // The cells between the layers keep their volume, which springs alone do not.
 #include "plugins/effect/common/cells.h"
 
-#include "kernel/stage/effect.h"
+#include "kernel/stage/wall_effect.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +21,8 @@ class Volume final : public Effect {
     const double mu = youngsModulus_ * 1e-3 / (2 * (1 + poissonsRatio_));
     const double kappa = mu * (4 * poissonsRatio_ - 1) / (1 - 2 * poissonsRatio_);
     Contribution part;
+    part.emptyBecause = WallSprings::emptyBecause(scene);
+    if (!part.emptyBecause.empty()) return part;
     if (!(kappa > 0)) {
       part.emptyBecause = "springs alone have a Poisson's ratio of 0.25";
       return part;

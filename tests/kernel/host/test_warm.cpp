@@ -1,22 +1,11 @@
 #include "kernel/host/warm.h"
 
+#include "tests/kernel/host/quiet_host.h"
 #include "tests/plugins/solver/wall.h"
 
 using namespace pectora;
 
 namespace {
-
-struct QuietHost : Host {
-  int previews = 0;
-  std::size_t nodes = 0;
-  bool isCancelled = false;
-  void progress(double, const std::string&) override {}
-  bool cancelled() const override { return isCancelled; }
-  void warn(const std::string&) override {}
-  void info(const std::string&) override {}
-  void preview(const NodeVectors& positions) override { ++previews, nodes = positions.size(); }
-  std::string pluginFolder() const override { return ""; }
-};
 
 struct Warm {
   Registry registry{{PECTORA_PLUGINS}};

@@ -53,6 +53,16 @@ TEST(Script, PassesInputsByPositionOrNameAndGetsSeveralResults) {
   EXPECT_EQ(s.run("local ct = loader.counter{} local a = segmenter.echo(ct, nil, { ct, ct }, {}) print(a.kind)"), "Volume\n");
 }
 
+TEST(Script, TakesEveryInstalledEffectForTheWordAuto) {
+  // The test plugins have one effect, pull, and a segmenter that tells how many it was given.
+  Script s;
+  EXPECT_EQ(s.run("print(segmenter.effects('auto').count)"), "1.0\n");
+  EXPECT_EQ(s.run("print(segmenter.effects{ effects = { 'auto' } }.count)"), "1.0\n");
+  EXPECT_EQ(s.run("print(segmenter.effects{ effects = { effect.pull{}, 'auto' } }.count)"), "1.0\n");
+  EXPECT_TRUE(contains(s.failure("segmenter.effects{ effects = { 'auto', effect.pull{} } }"), "every entry of this list"));
+  EXPECT_TRUE(contains(s.failure("segmenter.effects{ effects = 'automatic' }"), "must be a value that a stage returned"));
+}
+
 TEST(Script, SaysTheLineOfAMisspeltStageAndTheRightName) {
   const std::string text = Script().failure("local x = 1\n\nlaoder.counter{}");
   EXPECT_TRUE(contains(text, "test.lua:3")) << text;

@@ -6,6 +6,7 @@
 
 #include "plugins/solver/common/newton.h"
 #include "plugins/solver/common/quasi_static.h"
+#include "tests/kernel/host/quiet_host.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -42,14 +43,6 @@ struct Slab {
     for (std::size_t i = system.freeNodes; i < system.rest.size(); ++i) drive.frames[0].push_back(system.rest[i]), drive.frames[1].push_back(driven(i));
     return drive;
   }
-};
-
-struct QuietHost final : Host {
-  void progress(double, const std::string&) override {}
-  bool cancelled() const override { return false; }
-  void warn(const std::string&) override {}
-  void info(const std::string&) override {}
-  std::string pluginFolder() const override { return ""; }
 };
 
 /// Displacements of the top's nodes by Newton's method.

@@ -5,6 +5,7 @@
 #include "plugins/solver/multigrid/multigrid.h"
 
 #include "kernel/physics/springs.h"
+#include "tests/kernel/host/quiet_host.h"
 
 #include <cmath>
 
@@ -52,14 +53,6 @@ inline Drive bump(const System& system, double height) {
   }
   return drive;
 }
-
-struct QuietHost final : Host {
-  void progress(double, const std::string&) override {}
-  bool cancelled() const override { return false; }
-  void warn(const std::string&) override {}
-  void info(const std::string&) override {}
-  std::string pluginFolder() const override { return ""; }
-};
 
 // As the plugin makes it; `accuracy` in mm, 0: by the tolerance alone.
 inline std::unique_ptr<Session> multigrid(const System& system, double tolerance, double accuracy = 0) {
