@@ -24,7 +24,7 @@ local function fault(case, name, m)
     if figure ~= figure or math.abs(figure) == math.huge then return "a figure is not finite" end
   end
   local converged, sound = m.status == "converged", m.inverted_prisms == 0
-  local isTold = not converged and m.message:find("the energy grew", 1, true)   -- explicit steps may lose hold, but must say so
+  local isTold = m.status == "diverged" or m.message:find("the energy grew", 1, true)   -- explicit steps may lose hold, but must say so
   if m.energy_growth > (ripples[name] and 0.05 or 1e-10) and not isTold then return "the energy grew" end
   if not converged and m.message == "" then return "no word on what is wrong" end
   if case.must == "refuse" then return "was not refused" end

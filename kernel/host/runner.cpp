@@ -6,7 +6,9 @@
 #include "kernel/stage/solver.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +29,18 @@ const std::vector<Port>& portsOf(const Descriptor& d) {
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Of all threads of this process.
+double cpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+double heapMegabytes() {
+  const auto info = mallinfo2();
+  return double(info.uordblks + info.hblkhd) / 1048576;
 }
 
 double peakMegabytes() {
@@ -206,15 +220,17 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
     StageHost host(id, std::filesystem::path(plugin.file).parent_path().string(), messages_, cancel_);
     host.checkCancel();
     const auto start = std::chrono::steady_clock::now();
+    const double cpuBefore = cpuSeconds();
     Outputs outputs;
     if (stage) {
       outputs = stage->run(Inputs(descriptor.inputs, inputs), host);
       if (outputs.size() != descriptor.outputs.size())
         throw std::logic_error(fmt::format("returned {} values instead of {}", outputs.size(), descriptor.outputs.size()));
     } else {
-      outputs = {solve(plugin, std::move(solver), inputs, accept, host)};
+      outputs = {solve(plugin, std::move(solver), inputs, accept, host, record->heldMegabytes)};
     }
     record->seconds = secondsSince(start);
+    record->cpuSeconds = cpuSeconds() - cpuBefore;
     record->peakMegabytes = peakMegabytes();
     record->warnings = host.takeWarnings();
     messages_.finished(*record, false);
@@ -237,7 +253,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
 }
 
 std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept,
-                                            Host& host) {
+                                            Host& host, double& heldMegabytes) {
   auto scene = std::dynamic_pointer_cast<const Scene>(inputs[0].front().value);
   const auto plan = std::dynamic_pointer_cast<const Plan>(inputs[1].front().value);
   std::optional<Probe> probe;
@@ -249,6 +265,7 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_pt
     scene = choice.scene;
     probe = std::move(choice.probe);
   }
+  const double heapBefore = heapMegabytes();
   WarmSolve warm(scene, plugin.descriptor->id, std::move(solver), registry_, host);
   if (explanations) {
     explain(plugin, warm.compiled(), *scene, probe ? *probe : probeEffects(*scene, *plan, registry_, host));
@@ -256,10 +273,12 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_pt
   }
   if (!inputs[2].empty()) warm.startFrom(*std::dynamic_pointer_cast<const Motion>(inputs[2].front().value));
   const std::shared_ptr<const Motion> motion = warm.solve(*plan, host);
+  heldMegabytes = std::max(0.0, heapMegabytes() - heapBefore);
 
   if (motion->invertedPrisms > 0)
     host.warn(fmt::format("{} cells between skin and pleura turned inside out, the first at row {}, column {}",
                           motion->invertedPrisms, motion->invertedAt / scene->columns, motion->invertedAt % scene->columns));
+  if (motion->status == SolveStatus::converged && !motion->message.empty()) host.warn(motion->message);
   if (motion->status != SolveStatus::converged) {
     const std::string what = fmt::format("the solver {} after {} iterations, with a relative residual of {:.2g}{}{}",
                                          statusName(motion->status), motion->iterations, motion->relativeResidual,

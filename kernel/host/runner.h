@@ -69,7 +69,8 @@ class Runner {
   void checkInputs(const Plugin& plugin, const PortInputs& inputs) const;
   std::vector<Handle> fromCache(const std::string& key);
   void keep(const std::string& key, const std::vector<Handle>& handles);
-  std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host);
+  std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host,
+                                      double& heldMegabytes);
   void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Probe& probe);
 
   Registry& registry_;

@@ -18,13 +18,17 @@ void pushFact(lua_State* lua, const Fact& fact) {
   else lua_pushstring(lua, std::get<std::string>(fact.value).c_str());
 }
 
-// value.name: a fact, a part, `kind`, or `seconds`, which its stage took to make it.
+// value.name: a fact, a part, `kind`, or what its stage took to make it: `seconds`, `cpu_seconds`, and a solver's `megabytes`.
 int handleIndex(lua_State* lua) {
   const Handle& handle = *toHandle(lua, 1);
   const std::string name = luaL_checkstring(lua, 2);
   if (name == "kind") return lua_pushstring(lua, handle.value->kind()), 1;
-  if (name == "seconds" && handle.record) return lua_pushnumber(lua, handle.record->seconds), 1;
-  std::vector<std::string> known{"kind", "seconds"};
+  if (handle.record) {
+    if (name == "seconds") return lua_pushnumber(lua, handle.record->seconds), 1;
+    if (name == "cpu_seconds") return lua_pushnumber(lua, handle.record->cpuSeconds), 1;
+    if (name == "megabytes") return lua_pushnumber(lua, handle.record->heldMegabytes), 1;
+  }
+  std::vector<std::string> known{"kind", "seconds", "cpu_seconds", "megabytes"};
   for (const Fact& fact : handle.value->facts()) {
     if (fact.name == name) return pushFact(lua, fact), 1;
     known.push_back(fact.name);

@@ -38,7 +38,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 TEST(SwapScript, BringsEverySolverToRest) {
   const Ended swap = run("scripts/swap.lua", "matrix=128 lift=15 spacing=16");
   EXPECT_EQ(swap.code, 0) << swap.text;
-  EXPECT_EQ(count(swap.text, "converged"), 8u) << swap.text;
+  EXPECT_EQ(count(swap.text, "converged"), 9u) << swap.text;
 }
 
 TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
@@ -46,10 +46,10 @@ TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
   fs::remove_all(out);
   const Ended study = run("scripts/accuracy.lua", "quick=true runs=1 out=" + out.string());
   EXPECT_EQ(study.code, 0) << study.text;
-  for (const char* file : {"accuracy.csv", "solver_error.png", "total_error.png"}) EXPECT_TRUE(fs::exists(out / file)) << file;
+  for (const char* file : {"accuracy.csv", "accuracy.json", "solver_error.png", "total_error.png"}) EXPECT_TRUE(fs::exists(out / file)) << file;
   std::ostringstream table;
   table << std::ifstream(out / "accuracy.csv").rdbuf();
-  for (const char* solver : {"verlet", "semi_implicit", "implicit", "newton", "lbfgs", "multigrid", "projective"})
+  for (const char* solver : {"verlet", "semi_implicit", "implicit", "newton", "lbfgs", "multigrid", "projective", "xpbd"})
     EXPECT_GT(count(table.str(), std::string(",") + solver + ","), 0u) << solver;
   fs::remove_all(out);
 }

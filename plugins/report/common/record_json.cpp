@@ -53,7 +53,7 @@ Json provenanceJson(const std::vector<Handle>& handles) {
 Json timingJson(const std::vector<Handle>& handles) {
   Json list = Json::array();
   for (const RecordPointer& record : inOrder(handles))
-    list.push_back({{"stage", record->stage}, {"key", record->key}, {"seconds", record->seconds}, {"peak_megabytes", record->peakMegabytes}});
+    list.push_back({{"stage", record->stage}, {"key", record->key}, {"seconds", record->seconds}, {"cpu_seconds", record->cpuSeconds}, {"peak_megabytes", record->peakMegabytes}});
   return list;
 }
 

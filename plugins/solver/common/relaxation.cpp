@@ -11,8 +11,10 @@
 namespace pectora {
 namespace {
 
-// Growth of the energy that is more than the ripple of explicit steps.
+// Growth of the energy between two looks at it that is more than the ripple of explicit steps. A wall that is distorted can be
+// stiffer than its bound at rest; then steps are halved, so often at most.
 constexpr double kGrowth = 0.05;
+constexpr int kMostHalvings = 10;
 
 constexpr double kMmPerM = 1000;  // N / kg is m/s^2
 
@@ -23,8 +25,10 @@ class Relaxation final : public Session {
 
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
     const Movement movement(system_, drive, start);
-    const auto scheme = make_(system_, mass_, movement.beginning(), step_);
+    auto scheme = make_(system_, mass_, movement.beginning(), step_);
     Solution solution;
+    double step = step_;
+    int halvings = 0;
     double damping = settings_.damping, slowest = 0;
     double leastResidual = INFINITY;
     const double negligible = negligibleForce(system_);
@@ -50,7 +54,19 @@ class Relaxation final : public Session {
       // Judge the forces of every twentieth state once the bar is in place.
       host.checkCancel();
       const Residual residual = largestResidual(system_, scheme->gradient());
-      if (!std::isfinite(residual.force) || !std::isfinite(scheme->energy())) {
+      const double now = scheme->energy() + scheme->kineticEnergy();
+      const bool isFinite = std::isfinite(residual.force) && std::isfinite(now);
+      const bool grew = t >= 1 && total > 0 && total < INFINITY && !((now - total) / total <= kGrowth);
+      if (grew && settings_.timeStep == 0 && halvings < kMostHalvings) {
+        // Back to where it was last looked at, at rest there.
+        solution.forceEvaluations += scheme->evaluations();
+        step *= 0.5;
+        ++halvings;
+        scheme = make_(system_, mass_, lastGood, step);
+        total = INFINITY;
+        continue;
+      }
+      if (!isFinite) {
         solution.status = SolveStatus::diverged;
         solution.message = "a force at the " + system_.nodeName(residual.node) + " is not finite";
         break;
@@ -59,7 +75,6 @@ class Relaxation final : public Session {
       host.preview(scheme->positions());
       if (here.size() == 0) continue;
       lastGood = here;
-      const double now = scheme->energy() + scheme->kineticEnergy();
       if (total > 0) solution.energyGrowth = std::max(solution.energyGrowth, (now - total) / total);
       total = now;
       record(solution, *scheme, residual);
@@ -77,11 +92,13 @@ class Relaxation final : public Session {
     }
     if (solution.status == SolveStatus::stalled && solution.message.empty())
       solution.message = fmt::format("{} steps were not enough", settings_.maxIterations);
+    if (halvings > 0) host.info(fmt::format("the wall is so distorted that steps were halved {} times", halvings));
     // Damped motion that is followed rightly only loses energy.
-    if (solution.status == SolveStatus::stalled && solution.energyGrowth > kGrowth)
-      solution.message += fmt::format("; the energy grew by {:.0f} % between two looks at it: the time step is too long for a wall so distorted", 100 * solution.energyGrowth);
+    if (solution.energyGrowth > kGrowth)
+      solution.message += fmt::format("{}the energy grew by {:.0f} % between two looks at it: the time step is too long for a wall so distorted",
+                                      solution.message.empty() ? "" : "; ", 100 * solution.energyGrowth);
     solution.positions = std::move(lastGood);
-    solution.forceEvaluations = scheme->evaluations();
+    solution.forceEvaluations += scheme->evaluations();
     return solution;
   }
 
