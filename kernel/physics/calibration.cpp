@@ -42,24 +42,23 @@ LayerStiffness calibrateLayer(double e2, double a, double b, double bendShare) {
   return k;
 }
 
-CrossStiffness calibrateCross(double youngsModulus, double a, double b, double thickness) {
+CrossStiffness calibrateCross(double youngsModulus, double a, double b, double thickness, int rows, int columns) {
+  CrossStiffness cross{rows, columns, {}};
+  std::vector<double> radiusSquared;
+  for (int r = -rows; r <= rows; ++r)
+    for (int c = -columns; c <= columns; ++c) radiusSquared.push_back(r * a * r * a + c * b * c * b);
   const double target = 2.0 / 3 * thickness * thickness;
-  const auto radiusSquared = [&](int entry) {
-    const double r = (entry / 5 - 2) * a, c = (entry % 5 - 2) * b;
-    return r * r + c * c;
-  };
   // Mean of r^2 under the weights exp(-beta r^2): falls as beta grows.
   const auto meanRadius = [&](double beta) {
     double sum = 0, moment = 0;
-    for (int i = 0; i < 25; ++i) {
-      const double w = std::exp(-beta * radiusSquared(i));
+    for (const double square : radiusSquared) {
+      const double w = std::exp(-beta * square);
       sum += w;
-      moment += w * radiusSquared(i);
+      moment += w * square;
     }
     return moment / sum;
   };
-  CrossStiffness cross;
-  const double widest = 4 * (a * a + b * b);
+  const double widest = radiusSquared.front();
   double beta = 0;
   cross.isFeasible = target < 0.999 * widest;
   if (cross.isFeasible) {
@@ -71,12 +70,9 @@ CrossStiffness calibrateCross(double youngsModulus, double a, double b, double t
     }
   }
   double sum = 0;
-  for (int i = 0; i < 25; ++i) sum += std::exp(-beta * radiusSquared(i));
+  for (const double square : radiusSquared) sum += std::exp(-beta * square);
   const double total = 1.2 * youngsModulus * a * b / (thickness * thickness * thickness);
-  for (int i = 0; i < 25; ++i) {
-    const double weight = total * std::exp(-beta * radiusSquared(i)) / sum;
-    cross.stiffness[i] = weight * (radiusSquared(i) + thickness * thickness);
-  }
+  for (const double square : radiusSquared) cross.stiffness.push_back(total * std::exp(-beta * square) / sum * (square + thickness * thickness));
   return cross;
 }
 

@@ -23,15 +23,18 @@ LayerStiffness calibrateLayer(double e2, double rowSpacing, double columnSpacing
 /// The eight offsets (rows, columns) of the bend springs of a point, each pair once.
 const std::array<std::array<int, 2>, 8>& bendOffsets();
 
-/// Constants of the 25 springs from a skin point to the pleura, N/mm; entry (r + 2) * 5 + c + 2 is offset (r, c).
+/// Constants of the springs from a skin point to the pleura points up to `rows` rows and `columns` columns away, N/mm.
 struct CrossStiffness {
-  std::array<double, 25> stiffness{};
-  bool isFeasible = true;      ///< false: the wall is too thick for the spacing, the wall is too soft in shear
+  int rows = 2, columns = 2;
+  std::vector<double> stiffness;
+  bool isFeasible = true;      ///< false: the wall is too thick for the stencil's reach, and too soft in shear
+
+  double at(int row, int column) const { return stiffness[std::size_t(row + rows) * (2 * columns + 1) + column + columns]; }
 };
 
-/// `youngsModulus` in N/mm^2 (MPa), `thickness` H in mm. Weights k / L^2 = w exp(-beta r^2) with
-/// sum w = 1.2 E A / H^3 and a mean r^2 of 2/3 H^2, which is reached for H <= sqrt(6 (a^2 + b^2));
-/// beyond that all weights are equal.
-CrossStiffness calibrateCross(double youngsModulus, double rowSpacing, double columnSpacing, double thickness);
+/// `youngsModulus` in N/mm^2 (MPa), `thickness` H and spacings in mm. Weights k / L^2 = w exp(-beta r^2) with
+/// sum w = 1.2 E A / H^3 and a mean r^2 of 2/3 H^2. Springs at the corners alone reach that up to
+/// H^2 = 3/2 ((rows a)^2 + (columns b)^2); beyond it all weights are equal.
+CrossStiffness calibrateCross(double youngsModulus, double rowSpacing, double columnSpacing, double thickness, int rows = 2, int columns = 2);
 
 }  // namespace pectora

@@ -1,4 +1,4 @@
-// The 24 oblique springs from each skin point to the pleura around its own pleura point.
+// The oblique springs from each skin point to the pleura around its own pleura point: 24 in the paper.
 #include "kernel/stage/wall_effect.h"
 
 #include <fmt/format.h>
@@ -19,10 +19,10 @@ class Cross final : public Effect {
     if (!part.emptyBecause.empty()) return part;
     const CrossStiffness k = wall_.calibrate(scene, part.notes);
     double least = INFINITY, greatest = 0;
-    for (int r = -2; r <= 2; ++r) {
-      for (int c = -2; c <= 2; ++c) {
+    for (int r = -k.rows; r <= k.rows; ++r) {
+      for (int c = -k.columns; c <= k.columns; ++c) {
         if (r == 0 && c == 0) continue;  // the direct spring is an effect of its own
-        const double stiffness = wall_.stiffness > 0 ? wall_.stiffness : k.stiffness[(r + 2) * 5 + c + 2];
+        const double stiffness = wall_.stiffness > 0 ? wall_.stiffness : k.at(r, c);
         part.stencil.push_back({Layer::outer, Layer::inner, r, c, stiffness});
         least = std::min(least, stiffness);
         greatest = std::max(greatest, stiffness);
@@ -39,5 +39,5 @@ class Cross final : public Effect {
 }  // namespace
 
 PECTORA_EFFECT(Cross, {.id = "effect.cross", .version = "1.0",
-                       .summary = "The wall resists shearing: 24 oblique springs from each skin point to the pleura",
+                       .summary = "The wall resists shearing: oblique springs from each skin point to the pleura, 24 in the paper",
                        .references = "Moreira et al., SPIE 2012; E = 1/2 k (l - l0)^2"})

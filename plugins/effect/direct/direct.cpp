@@ -14,7 +14,7 @@ class Direct final : public Effect {
     Contribution part;
     part.emptyBecause = WallSprings::emptyBecause(scene);
     if (!part.emptyBecause.empty()) return part;
-    const double k = wall_.stiffness > 0 ? wall_.stiffness : wall_.calibrate(scene, part.notes).stiffness[12];
+    const double k = wall_.stiffness > 0 ? wall_.stiffness : wall_.calibrate(scene, part.notes).at(0, 0);
     part.stencil = {{Layer::outer, Layer::inner, 0, 0, k}};
     part.notes.push_back(fmt::format("k = {:.4g} N/mm", k));
     return part;
