@@ -3,21 +3,31 @@
 #include "kernel/physics/workers.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace pectora {
 namespace {
 
-constexpr int kReach = 2, kWidth = 2 * kReach + 1;
+constexpr int kUsualReach = 2;
 
 }  // namespace
 
 GridMatrix::GridMatrix(GridShape shape)
-    : shape_(shape), index_(std::size_t(shape.layers) * shape.layers * (kReach + 1) * kWidth, -1),
-      diagonal_(std::size_t(shape.layers), std::vector<float>(6 * std::size_t(shape.rows) * shape.columns)), inverse_(diagonal_) {}
+    : shape_(shape), diagonal_(std::size_t(shape.layers), std::vector<float>(6 * std::size_t(shape.rows) * shape.columns)), inverse_(diagonal_) {
+  widen(kUsualReach);
+}
+
+void GridMatrix::widen(int reach) {
+  reach_ = reach;
+  index_.assign(std::size_t(shape_.layers) * shape_.layers * (reach_ + 1) * (2 * reach_ + 1), -1);
+  for (std::size_t i = 0; i < offsets_.size(); ++i)
+    index_[indexOf(offsets_[i].layer, offsets_[i].otherLayer, offsets_[i].rows, offsets_[i].columns)] = int(i);
+}
 
 GridMatrix::Offset& GridMatrix::offset(int layer, int otherLayer, int rows, int columns) {
-  int& index = index_[((std::size_t(layer) * shape_.layers + otherLayer) * (kReach + 1) + rows) * kWidth + columns + kReach];
+  if (std::max(rows, std::abs(columns)) > reach_) widen(std::max(rows, std::abs(columns)));
+  int& index = index_[indexOf(layer, otherLayer, rows, columns)];
   if (index < 0) {
     index = int(offsets_.size());
     offsets_.push_back({layer, otherLayer, rows, columns, std::vector<float>(9 * std::size_t(shape_.rows) * shape_.columns)});

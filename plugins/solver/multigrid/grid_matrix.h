@@ -23,8 +23,7 @@ class GridMatrix {
   explicit GridMatrix(GridShape shape);
   const GridShape& shape() const { return shape_; }
 
-  /// Adds to the block that belongs to `point` itself, and to the block (a, b) with its transpose (b, a); a and b differ and
-  /// lie at most two rows and columns apart.
+  /// Adds to the block that belongs to `point` itself, and to the block (a, b) with its transpose (b, a); a and b differ.
   void addDiagonal(std::size_t point, const Symmetric3& block, double weight);
   void addCoupling(std::size_t a, std::size_t b, const Matrix3& block, double weight);
   /// Inverts the blocks on the diagonal. To be called once all is added.
@@ -48,9 +47,15 @@ class GridMatrix {
   // Of a point's blocks: entry e of the block at (row, column) of an offset, or of a layer's diagonal.
   std::size_t place(int row, int column, int entries) const { return (std::size_t(row) * entries) * shape_.columns + column; }
   Offset& offset(int layer, int otherLayer, int rows, int columns);
+  /// Makes room for offsets up to so many rows and columns.
+  void widen(int reach);
+  std::size_t indexOf(int layer, int otherLayer, int rows, int columns) const {
+    return ((std::size_t(layer) * shape_.layers + otherLayer) * (reach_ + 1) + rows) * (2 * reach_ + 1) + columns + reach_;
+  }
 
   GridShape shape_;
   std::vector<Offset> offsets_;
+  int reach_ = 0;                              // of the offsets that index_ has room for
   std::vector<int> index_;                     // of an offset in offsets_, -1 if there is none
   std::vector<std::vector<float>> diagonal_, inverse_;   // one a layer: 6 numbers a point
 };

@@ -37,11 +37,10 @@ class MultigridMetric final : public Metric {
 
  private:
   static GridShape shapeOf(const System& system) {
-    const std::size_t layer = std::size_t(system.rows) * system.columns;
-    if (layer == 0 || system.freeNodes == 0 || system.freeNodes % layer != 0)
+    if (system.freeNodes == 0 || system.freeNodes != system.anchorNode(0))
       throw Error(fmt::format("{} free points do not fill layers of {} x {} points", system.freeNodes, system.rows, system.columns))
           .advise("Choose another solver, such as solver.newton");
-    return {int(system.freeNodes / layer), system.rows, system.columns};
+    return {system.layers, system.rows, system.columns};
   }
   Hierarchy::Product product() const {
     return [this](const SingleVectors& in, SingleVectors& out) {

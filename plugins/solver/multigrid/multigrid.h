@@ -8,7 +8,7 @@
 namespace pectora {
 
 /// The projected Hessian's inverse by one V-cycle. It is taken anew only where the old one has come to steer badly, so that
-/// a small movement of the bar costs no preparation. All free nodes must lie on the grid of the layers and all terms must have
+/// a small movement of the bar costs no preparation. The free nodes must be those of the layers' grid, and all terms must have
 /// a Hessian; throws Error otherwise.
 std::unique_ptr<Metric> makeMultigridMetric(const System& system);
 

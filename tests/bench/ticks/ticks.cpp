@@ -6,6 +6,7 @@
 #include "kernel/physics/workers.h"
 
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <chrono>
 #include <map>
@@ -30,6 +31,11 @@ struct Solved {
     return *found;
   }
 };
+
+double heapBytes() {
+  const auto info = mallinfo2();
+  return double(info.uordblks + info.hblkhd);
+}
 
 double secondsOfOneEvaluation(const System& system) {
   NodeVectors gradient(system.rest.size());
@@ -64,8 +70,51 @@ void solve(benchmark::State& state, bool isTick) {
 }
 
 void tick(benchmark::State& state) { solve(state, true); }
+
+// A slider: the skin becomes 20 % stiffer. Counted is all of it, from the new constants to the new rest: terms, coarse grids, and
+// the solve from where the wall was.
+void stiffnessSlider(benchmark::State& state) {
+  setThreads(2);
+  const int side = int(state.range(0));
+  const Solved& solved = Solved::of(side);
+  QuietHost host;
+  const Drive drive = bump(solved.system, 28);
+  const System stiffer = fineWall(side, 2, 1.2);
+  const Solution exact = multigrid(stiffer, 1e-8, 0)->solve(drive, &solved.before.positions, host);
+  Solution found;
+  for (auto _ : state) {
+    const System system = fineWall(side, 2, 1.2);
+    found = multigrid(system, 1e-12, 0.1)->solve(drive, &solved.before.positions, host);
+  }
+  double error = 0;
+  for (std::size_t i = 0; i < stiffer.freeNodes; ++i) error = std::max(error, distance(found.positions[i], exact.positions[i]));
+  state.counters["error_mm"] = error;
+  state.counters["force_evaluations"] = found.forceEvaluations;
+}
+
+// Heap of the lattice with its attachments and anchors, and of the solver's session after a tick.
+void memory(benchmark::State& state) {
+  setThreads(2);
+  const int side = int(state.range(0));
+  const double points = double(side) * side;
+  const Solved& solved = Solved::of(side);
+  QuietHost host;
+  double lattice = 0, session = 0;
+  for (auto _ : state) {
+    const double none = heapBytes();
+    const System system = fineWall(side);
+    lattice = heapBytes() - none;
+    const auto solver = multigrid(system, 1e-12, 0.1);
+    { const Solution found = solver->solve(bump(system, 30), &solved.before.positions, host); }
+    session = heapBytes() - none - lattice;
+  }
+  state.counters["lattice_bytes_a_point"] = lattice / points;
+  state.counters["solver_bytes_a_point"] = session / points;
+}
 void fromRest(benchmark::State& state) { solve(state, false); }
 BENCHMARK(tick)->ArgsProduct({{100, 224, 447}, {1, 2}})->ArgNames({"side", "threads"})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(stiffnessSlider)->Arg(224)->ArgNames({"side"})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(memory)->Arg(224)->Arg(447)->ArgNames({"side"})->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(fromRest)->ArgsProduct({{100, 224}, {2}})->ArgNames({"side", "threads"})->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

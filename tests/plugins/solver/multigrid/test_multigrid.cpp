@@ -69,6 +69,17 @@ TEST(Multigrid, SolvesAWallThroughTheProgram) {
   EXPECT_LT(largestDifference(found->outer, expected->outer), 1e-3);
 }
 
+TEST(Multigrid, TakesSpringsThatReachFartherThanThePapers) {
+  const System system = fineWall(33, 5);
+  QuietHost host;
+  const Solution found = multigrid(system, 1e-8)->solve(bump(system, 10), nullptr, host);
+  EXPECT_EQ(found.status, SolveStatus::converged);
+  QuasiStaticSettings settings;
+  settings.tolerance = 1e-9;
+  const Solution exact = makeQuasiStatic(system, settings, std::make_unique<Newton>(system), 60)->solve(bump(system, 10), nullptr, host);
+  EXPECT_LT(largestDistance(found.positions, exact.positions, system.freeNodes), 1e-3);
+}
+
 TEST(Multigrid, RefusesPointsThatFillNoGrid) {
   System system = fineWall(8);
   system.freeNodes = 100;

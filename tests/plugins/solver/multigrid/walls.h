@@ -11,8 +11,9 @@
 
 namespace pectora {
 
-// n x n points 2 mm apart and 20 mm thick with the paper's stencil, each pleura point tied to three anchors.
-inline System fineWall(int n) {
+// n x n points 2 mm apart and 20 mm thick with the paper's stencil, each pleura point tied to three anchors. `reach`: of the oblique
+// springs, in points; `skin`: stiffness of the springs within the skin, N/mm, where the others have 1.
+inline System fineWall(int n, int reach = 2, double skin = 1) {
   System system;
   system.rows = system.columns = n;
   const std::size_t layer = std::size_t(n) * n;
@@ -28,10 +29,10 @@ inline System fineWall(int n) {
   }
   system.mass.assign(system.freeNodes, 1e-4);
   std::vector<StencilSpring> stencil;
-  for (int r = -2; r <= 2; ++r)
-    for (int c = -2; c <= 2; ++c) {
+  for (int r = -reach; r <= reach; ++r)
+    for (int c = -reach; c <= reach; ++c) {
       stencil.push_back({Layer::outer, Layer::inner, r, c, 1});
-      if (r > 0 || (r == 0 && c > 0)) stencil.push_back({Layer::outer, Layer::outer, r, c, 1});
+      if (std::max(std::abs(r), std::abs(c)) <= 2 && (r > 0 || (r == 0 && c > 0))) stencil.push_back({Layer::outer, Layer::outer, r, c, skin});
     }
   system.terms.push_back(makeLatticeTerm("lattice", system, stencil));
   system.terms.push_back(makeSpringTerm("ties", system, ties));
