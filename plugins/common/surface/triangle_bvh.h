@@ -22,9 +22,20 @@ class TriangleBvh {
   explicit TriangleBvh(const Mesh& mesh);
 
   bool empty() const { return blocks_.empty(); }
-  /// The nearest triangle, the first of the mesh among equally near ones; exact in double. `best` may hold a triangle to begin
-  /// with: a near one makes the search shorter, and never changes what it finds. Coordinates of p are below kHuge.
-  void search(Vec3 p, NearestTriangle& best) const;
+  /// Where a search begins: nodes, or blocks, of one level.
+  struct Start {
+    static constexpr int kMost = 6;
+    int level = 0, count = 0;
+    std::int32_t nodes[kMost];
+  };
+  /// The whole tree.
+  Start root() const { return {int(levels_.size()), 1, {0}}; }
+  /// Nodes that hold every triangle that comes into the ball: a shorter way for points close together.
+  Start startFor(Vec3 center, double radius) const;
+
+  /// The nearest triangle below `start`, the first of the mesh among equally near ones; exact in double. `best` may hold a triangle to
+  /// begin with: a near one makes the search shorter, and never changes what it finds. Coordinates of p are below kHuge.
+  void search(Vec3 p, const Start& start, NearestTriangle& best) const;
 
   static constexpr double kHuge = 1e12;   ///< mm; its square still has a place in a float
 
@@ -43,7 +54,9 @@ class TriangleBvh {
   };
 
  private:
-  void order(const Mesh& mesh, std::vector<std::int32_t>& sorted);
+  struct Local;
+  Local local(Vec3 p) const;
+  std::vector<std::int32_t> order(const Mesh& mesh);
   void fillBlocks(const Mesh& mesh, const std::vector<std::int32_t>& sorted);
   void fillNodes();
   void fillDiscs();

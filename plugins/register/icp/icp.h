@@ -17,7 +17,7 @@ struct IcpSettings {
   double ballRadius = 0;
   int coarsePoints = 5000;       ///< of the first level; each further one has ten times as many, the last one all
   int maxIterations = 100;       ///< over all levels
-  double tolerance = 0.02;       ///< converged when no point moves further in one iteration, mm; the next would move a tenth of it
+  double tolerance = 0.005;      ///< converged when no point moves further in one iteration, mm; the next would move about a sixth of it
   int finePoints = 2000000;       ///< of the last level, at most
 };
 
