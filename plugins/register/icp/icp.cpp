@@ -40,7 +40,7 @@ class Alignment {
  public:
   Alignment(const MovingPoints& moving, const Mesh& fixed, const Mesh* changed, const IcpSettings& settings, const std::function<void(double)>& poll)
       : settings_(settings), tree_(fixed), poll_(poll) {
-    if (changed) changed_ = changedPoints(fixed, SurfaceTree(*changed), settings.changeThreshold, settings.changeMargin, [](double) {});
+    if (changed) changed_ = changedPoints(fixed.points, SurfaceTree(*changed).closest(fixed.points, [](double) {}), settings.changeThreshold, settings.changeMargin);
     // Along a curve that fills space, so that every n-th point is spread evenly and neighbours share their way through the tree.
     const std::vector<std::int32_t> order = spatialOrder(moving.points);
     all_.reserve(order.size());
@@ -250,16 +250,6 @@ Registration alignSurface(const MovingPoints& moving, const Mesh& fixed, const M
   if (moving.points.size() < kFewest)
     throw Error("the moving surface has too few points").of("moving").given(std::to_string(moving.points.size())).allowed(fmt::format("{} or more", kFewest));
   return Alignment(moving, fixed, changed, settings, poll).run();
-}
-
-std::vector<Vec3> pointNormals(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.points.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 n = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
-    for (int corner : t) normals[corner] += n;
-  }
-  for (Vec3& n : normals) n = normalized(n);
-  return normals;
 }
 
 }  // namespace pectora

@@ -41,7 +41,4 @@ struct MovingPoints {
 Registration alignSurface(const MovingPoints& moving, const Mesh& fixed, const Mesh* changed, const IcpSettings& settings,
                           const std::function<void(double)>& poll);
 
-/// Unit normals of a mesh's points, weighted by the triangles' areas; zero where no triangle has one.
-std::vector<Vec3> pointNormals(const Mesh& mesh);
-
 }  // namespace pectora

@@ -95,12 +95,13 @@ class Files final : public Stage {
       const FileNote note{handle.record->key};
       std::vector<double> distances;
       if (const auto* mesh = dynamic_cast<const Mesh*>(comparison.sample.get())) {
-        writeFile(file(comparison.name + ".vtp"), vtpBytes(*mesh, note));
+        writeSurface(comparison.name, *mesh, note);
         distances = fieldValues(mesh->fields);
       } else if (const auto* points = dynamic_cast<const Points*>(comparison.sample.get())) {
-        writeFile(file(comparison.name + ".vtp"), vtpBytes(*points, note));
+        writeSurface(comparison.name, *points, note);
         distances = fieldValues(points->fields);
       }
+      if (comparison.reference) writeSurface(comparison.name + "_reverse", *comparison.reference, note);
       const double limit = colorLimit_ > 0 ? colorLimit_ : roundLimit(distances);
       std::string title = comparison.name;
       std::replace(title.begin(), title.end(), '_', ' ');
@@ -113,6 +114,13 @@ class Files final : public Stage {
       }
       writeFile(file(comparison.name + "_histogram.csv"), csv);
     }
+  }
+
+  // With its figures point by point, for ParaView and Slicer (VTP), and for MeshLab and CloudCompare (PLY).
+  template <class Surface>
+  void writeSurface(const std::string& name, const Surface& surface, const FileNote& note) {
+    writeFile(file(name + ".vtp"), vtpBytes(surface, note));
+    writeFile(file(name + ".ply"), plyBytes(surface, note));
   }
 
   static std::vector<double> fieldValues(const std::vector<PointField>& fields) {
