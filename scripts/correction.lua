@@ -3,6 +3,7 @@ local p = parameters{
   { name = "ct", role = "input", doc = "The CT before the operation: a folder of DICOM files, or a DICOMDIR" },
   { name = "series", doc = "Which series of the folder, if there are several; default: the largest axial CT" },
   { name = "scan", role = "input", doc = "A 3-D scan after the operation: FastSCAN text, PLY, STL or OBJ; without it nothing is compared" },
+  { name = "scan_units", default = "", choices = { "", "mm", "cm", "m", "inch" }, doc = "Unit of the scan; empty: mm if that is the size of a torso" },
   { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
   { name = "icp", default = true, doc = "After the landmarks, bring the scan closer by the surfaces that the operation does not change" },
@@ -52,7 +53,7 @@ local comparisons = {
 }
 local registrations = {}
 if p.scan then
-  local scanned = scan.file{ path = p.scan }
+  local scanned = scan.file{ path = p.scan, units = p.scan_units }
   local aligned
   aligned, registrations[1] = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
                                                  scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })

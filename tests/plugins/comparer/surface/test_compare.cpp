@@ -149,8 +149,9 @@ TEST(Hollow, IsAsDeepAsTheStringOverTheFrontSays) {
     // In the slice through z the string hangs on the slice's own ends, 100 mm beside the middle.
     const Vec3 p = skin.points[i];
     const double ends = 30 * std::exp(-(100 * 100 + p.z * p.z) / (2 * 900));
-    // Slices are 2 mm apart, and between them the string is straight: second derivative of its ends times 2^2 / 8.
-    EXPECT_NEAR(depths[i], std::max(0.0, p.y - ends), 1e-4) << p.x << ' ' << p.z;
+    // Slices are 2 mm apart, rows 5 mm: between slices the string misses half of what a row bends by, 5 mm times the second derivative of
+    // its ends, which is 30 exp(-100^2 / 1800) / 900 = 1.3e-4 / mm at the most.
+    EXPECT_NEAR(depths[i], std::max(0.0, p.y - ends), 4e-4) << p.x << ' ' << p.z;
   }
 }
 
@@ -168,8 +169,12 @@ TEST(Hollow, IsNothingOnARoundBodyAndOnItsBack) {
   const std::vector<double> depths = hollowDepths(body);
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const Vec3 p = body.points[i];
-    if (p.y > 0 || std::abs(p.x) > 45) EXPECT_LT(depths[i], 1e-6) << p.x << ' ' << p.y;
-    if (p.y < 0 && std::abs(p.x) < 1e-9) EXPECT_NEAR(depths[i], 10 - 2.6, 1);   // the string cuts the circle between the groove's shoulders
+    if (p.y > 0 || std::abs(p.x) > 45) {
+      EXPECT_LT(depths[i], 1e-6) << p.x << ' ' << p.y;
+    }
+    if (p.y < 0 && std::abs(p.x) < 1e-9) {
+      EXPECT_NEAR(depths[i], 10 - 2.6, 1);   // the string cuts the circle between the groove's shoulders
+    }
   }
 }
 
@@ -200,8 +205,10 @@ TEST(Compare, MeasuresEveryPredictionOverTheSameHollow) {
   ASSERT_EQ(field.name, "hollow");
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     const double off = std::hypot(scan->points[i].x, scan->points[i].z);
-    if (off < 65) EXPECT_EQ(field.values[i], 1) << off;
-    if (off > 85) EXPECT_EQ(field.values[i], 0) << off;   // a triangle belongs to it with one corner, 5 mm further
+    // Between them lies the grid: a triangle belongs to it with one corner, up to 7 mm further.
+    if (off < 65 || off > 85) {
+      EXPECT_EQ(field.values[i], off < 65) << off;
+    }
   }
 }
 
