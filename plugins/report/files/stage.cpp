@@ -105,8 +105,9 @@ class Files final : public Stage {
       const double limit = colorLimit_ > 0 ? colorLimit_ : roundLimit(distances);
       std::string title = comparison.name;
       std::replace(title.begin(), title.end(), '_', ' ');
-      surfacePicture(*comparison.sample, "distance", limit, "Signed distance: " + title, {caption("whole overlap", comparison.overlap), caption("pit region", comparison.pit)})
-          .write(file(comparison.name + ".png"));
+      std::vector<std::string> captions{caption("whole overlap", comparison.overlap), caption("pit region", comparison.pit)};
+      for (const ComparedRegion& region : comparison.regions) captions.push_back(caption(region.name, region.distances));
+      surfacePicture(*comparison.sample, "distance", limit, "Signed distance: " + title, captions).write(file(comparison.name + ".png"));
       std::string csv = "low_mm,high_mm,points\n";
       for (std::size_t i = 0; i < comparison.histogram.counts.size(); ++i) {
         const double low = comparison.histogram.low + double(i) * comparison.histogram.binWidth;
