@@ -33,7 +33,8 @@ class SurfaceTree {
   /// they are what to begin with.
   void closestInTurn(std::span<const Vec3> points, std::span<SurfaceHit> hits) const;
   /// The closest point of the neighbourhood: goes from the triangle `start` to those that touch it where it comes nearer to p, as long as there
-  /// is one. For points that have hardly moved since their closest point was found there; a tenth of the time of `closest`.
+  /// is one. For points that have hardly moved since their closest point was found there; a fifth of the time of `closest`. In a fold a
+  /// face beside the present one may be nearer, by at most twice what the point has moved.
   SurfaceHit closestNearby(Vec3 p, int start) const;
   /// Of many points, on all threads; the same as one by one. `poll` is called now and then with the fraction done, and may throw.
   std::vector<SurfaceHit> closest(const std::vector<Vec3>& points, const std::function<void(double)>& poll) const;
