@@ -218,8 +218,9 @@ std::vector<std::int32_t> TriangleBvh::order(const Mesh& mesh) {
 }
 
 void TriangleBvh::fillBlocks(const Mesh& mesh, const std::vector<std::int32_t>& sorted) {
-  blocks_.resize((sorted.size() + kWide - 1) / kWide);
-  parallelBlocks(blocks_.size(), [&](std::size_t begin, std::size_t end) {
+  blockCount_ = (sorted.size() + kWide - 1) / kWide;
+  blocks_ = std::make_unique_for_overwrite<Block[]>(blockCount_);   // most of the tree's memory, written once
+  parallelBlocks(blockCount_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       Block& block = blocks_[b];
       block.hasThin = false;
@@ -242,7 +243,7 @@ void TriangleBvh::fillNodes() {
   const auto enclose = [](Node& node, int child, const float low[3], const float high[3]) {
     for (int a = 0; a < 3; ++a) node.low[a][child] = low[a], node.high[a][child] = high[a];
   };
-  for (std::size_t count = blocks_.size();;) {
+  for (std::size_t count = blockCount_;;) {
     const std::size_t level = levels_.size(), parents = (count + kWide - 1) / kWide;
     levels_.emplace_back(parents);
     parallelBlocks(parents, [&](std::size_t begin, std::size_t end) {
@@ -284,7 +285,7 @@ void TriangleBvh::fillDiscs() {
     parallelBlocks(level.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j)
         for (int i = 0; i < kWide; ++i) {
-          const std::size_t first = std::min(blocks_.size(), (kWide * j + i) * perChild), last = std::min(blocks_.size(), first + perChild);
+          const std::size_t first = std::min(blockCount_, (kWide * j + i) * perChild), last = std::min(blockCount_, first + perChild);
           // The axis is the mean normal, the centre the middle of the first corners.
           Vec3 normal, middle;
           for (std::size_t b = first; b < last; ++b)
@@ -330,7 +331,7 @@ TriangleBvh::Local TriangleBvh::local(Vec3 p) const {
   const float about[3] = {float(d.x), float(d.y), float(d.z)};
   // Rounding p, the boxes and their difference errs by less than four units in the last place of the largest coordinate.
   const float largest = std::max({extent_, std::abs(about[0]), std::abs(about[1]), std::abs(about[2])});
-  return {{levels_.data(), discs_.data(), int(discs_.size()), blocks_.data(), std::int32_t(blocks_.size())}, {p.x, p.y, p.z}, {about[0], about[1], about[2]}, largest * 5e-7f};
+  return {{levels_.data(), discs_.data(), int(discs_.size()), blocks_.get(), std::int32_t(blockCount_)}, {p.x, p.y, p.z}, {about[0], about[1], about[2]}, largest * 5e-7f};
 }
 
 TriangleBvh::Start TriangleBvh::startFor(Vec3 center, double radius) const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace pectora {
@@ -21,7 +22,7 @@ class TriangleBvh {
   /// finite and below kHuge. Built on all threads, the same for any number of them.
   explicit TriangleBvh(const Mesh& mesh);
 
-  bool empty() const { return blocks_.empty(); }
+  bool empty() const { return blockCount_ == 0; }
   /// Where a search begins: nodes, or blocks, of one level.
   struct Start {
     static constexpr int kMost = 6;
@@ -63,7 +64,8 @@ class TriangleBvh {
 
   Vec3 center_;
   float extent_ = 0;                        // largest coordinate about the centre, mm
-  std::vector<Block> blocks_;               // leaves, in the tree's order
+  std::size_t blockCount_ = 0;
+  std::unique_ptr<Block[]> blocks_;         // leaves, in the tree's order
   std::vector<std::vector<Node>> levels_;   // node j of level l has the children 8 j ... 8 j + 7 of level l - 1 (of the blocks)
   std::vector<std::vector<Discs>> discs_;   // of the lowest levels, where the surface is nearly flat
 };

@@ -139,17 +139,17 @@ class Alignment {
 
   // Tukey's weights about zero, scaled by the median absolute distance; beyond the overlap's share, nothing.
   NormalEquations accumulate(const std::vector<Sample>& samples) {
+    // Quantiles of so many are known to half a percent.
+    constexpr std::size_t kEnough = 100000;
+    const std::size_t stride = samples.size() / kEnough + 1;
     std::vector<double> distances;
-    distances.reserve(samples.size());
+    std::array<std::size_t, kKinds> kinds{};
     for (const Sample& s : samples)
-      if (s.pair == kPaired) distances.push_back(std::abs(s.distance));
-    if (distances.size() < kFewest) {
-      std::array<std::size_t, kKinds> kinds{};
-      for (const Sample& s : samples) ++kinds[s.pair];
-      throw Error("too few points of the moving surface have a counterpart on the fixed one").given(std::to_string(distances.size())).allowed(fmt::format("{} or more", kFewest))
+      if (kinds[s.pair]++ % stride == 0 && s.pair == kPaired) distances.push_back(std::abs(s.distance));
+    if (kinds[kPaired] < kFewest)
+      throw Error("too few points of the moving surface have a counterpart on the fixed one").given(std::to_string(kinds[kPaired])).allowed(fmt::format("{} or more", kFewest))
           .advise(fmt::format("Of {} points, {} are too far away, {} beyond the border, {} have another normal, {} lie where the operation changes the surface: align by landmarks first, and check units and settings",
                               samples.size(), kinds[kFar], kinds[kBorder], kinds[kNormal], kinds[kChanged]));
-    }
     const auto quantile = [&](double q) {
       const auto at = distances.begin() + std::ptrdiff_t(q * double(distances.size() - 1));
       std::nth_element(distances.begin(), at, distances.end());
