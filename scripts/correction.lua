@@ -3,6 +3,7 @@ local p = parameters{
   { name = "ct", role = "input", doc = "The CT before the operation: a folder of DICOM files, or a DICOMDIR" },
   { name = "series", doc = "Which series of the folder, if there are several; default: the largest axial CT" },
   { name = "scan", role = "input", doc = "A 3-D scan after the operation: FastSCAN text, PLY, STL or OBJ; without it nothing is compared" },
+  { name = "scan_units", default = "", choices = { "", "mm", "cm", "m", "inch" }, doc = "Unit of the scan; empty: mm if that is the size of a torso" },
   { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
   { name = "icp", default = true, doc = "After the landmarks, bring the scan closer by the surfaces that the operation does not change" },
@@ -52,21 +53,22 @@ local comparisons = {
 }
 local registrations = {}
 if p.scan then
-  local scanned = scan.file{ path = p.scan }
+  local scanned = scan.file{ path = p.scan, units = p.scan_units }
   local aligned
   aligned, registrations[1] = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
                                                  scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })
   if p.icp then aligned, registrations[2] = register.icp(aligned, motion.before, motion.after) end
-  comparisons[2] = comparer.surface(aligned, motion.after, { name = "scan_vs_simulated", unchanged = motion.before })
+  comparisons[2] = comparer.surface(aligned, motion.after, { name = "scan_vs_simulated", unchanged = motion.before, copied = motion.copied })
 end
 report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion,
               registration = registrations, comparisons = comparisons, slices = p.slices, path = p.out }
 
--- The table of the paper: signed distances in mm.
+-- The table of the paper: signed distances in mm. The pit is where the prediction moves the skin; the hollow is where the skin before lies
+-- behind a string over its front, whatever is predicted: models are to be compared there.
 print(string.format("Haller index before %.2f, correction index %.1f %%", anatomy.haller_index, anatomy.correction_index))
 print(string.format("%-34s %9s %9s %9s %9s %9s %9s", "signed distance, mm", "points", "mean", "SD", "min", "max", "RMS"))
 for _, c in ipairs(comparisons) do
-  for _, region in ipairs{ "overlap", "pit" } do
+  for _, region in ipairs{ "overlap", "pit", "hollow" } do
     if c[region .. "_points"] > 0 then
       print(string.format("%-34s %9d %+9.2f %9.2f %+9.2f %+9.2f %9.2f", c.name:gsub("_", " ") .. ", " .. region, c[region .. "_points"] // 1,
                           c[region .. "_mean"], c[region .. "_sd"], c[region .. "_min"], c[region .. "_max"], c[region .. "_rms"]))
@@ -78,8 +80,12 @@ for i, r in ipairs(registrations) do
 end
 if p.scan then
   local c = comparisons[2]
-  if c.pit_points > 0 then
-    print(string.format("scan against the unchanged CT, pit: RMS %.2f mm; skill of the prediction %.2f", c.unchanged_pit_rms, c.skill))
+  local skills = { pit = { "skill", "skill_against_copy" }, hollow = { "hollow_skill", "hollow_skill_against_copy" } }
+  for _, region in ipairs{ "pit", "hollow" } do
+    if c[region .. "_points"] > 0 then
+      print(string.format("scan, %s, RMS: %.2f mm from the prediction, %.2f from nothing changed (skill %.2f), %.2f from skin that copies bone (skill %.2f)", region,
+                          c[region .. "_rms"], c["unchanged_" .. region .. "_rms"], c[skills[region][1]], c["copied_" .. region .. "_rms"], c[skills[region][2]]))
+    end
   end
 end
 print("Results are in " .. p.out)

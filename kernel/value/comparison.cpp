@@ -61,11 +61,12 @@ SymmetricDistances symmetric(const DistanceStatistics& there, const DistanceStat
 
 namespace {
 
+double skillOf(const DistanceStatistics& distances, const DistanceStatistics& baseline) {
+  return baseline.rms > 0 ? 1 - distances.rms / baseline.rms : std::numeric_limits<double>::quiet_NaN();
+}
+
 double skillOf(const DistanceStatistics& overlap, const DistanceStatistics& pit, const DistanceStatistics& baselineOverlap, const DistanceStatistics& baselinePit) {
-  const bool inPit = baselinePit.count > 0;
-  const double baseline = inPit ? baselinePit.rms : baselineOverlap.rms;
-  if (baseline <= 0) return std::numeric_limits<double>::quiet_NaN();
-  return 1 - (inPit ? pit.rms : overlap.rms) / baseline;
+  return baselinePit.count > 0 ? skillOf(pit, baselinePit) : skillOf(overlap, baselineOverlap);
 }
 
 void addStatistics(std::vector<Fact>& facts, const std::string& region, const DistanceStatistics& s) {
@@ -94,6 +95,9 @@ void addReverse(std::vector<Fact>& facts, const std::string& region, const Dista
 
 }  // namespace
 
+double ComparedRegion::skill() const { return skillOf(distances, unchanged); }
+double ComparedRegion::skillAgainstCopy() const { return skillOf(distances, copied); }
+
 double Comparison::skill() const { return skillOf(overlap, pit, baselineOverlap, baselinePit); }
 double Comparison::skillAgainstCopy() const { return skillOf(overlap, pit, copiedOverlap, copiedPit); }
 
@@ -114,7 +118,14 @@ std::vector<Fact> Comparison::facts() const {
   for (const ComparedRegion& r : regions) {
     addStatistics(facts, r.name, r.distances);
     addReverse(facts, r.name, r.distances, r.reverse);
-    if (r.unchanged.count > 0) addStatistics(facts, "unchanged_" + r.name, r.unchanged);
+    if (r.unchanged.count > 0) {
+      addStatistics(facts, "unchanged_" + r.name, r.unchanged);
+      facts.push_back({r.name + "_skill", r.skill(), ""});
+    }
+    if (r.copied.count > 0) {
+      addStatistics(facts, "copied_" + r.name, r.copied);
+      facts.push_back({r.name + "_skill_against_copy", r.skillAgainstCopy(), ""});
+    }
   }
   if (baselineOverlap.count > 0) {
     addStatistics(facts, "unchanged_overlap", baselineOverlap);

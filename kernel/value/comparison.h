@@ -58,12 +58,17 @@ struct SymmetricDistances {
 /// All zero if either way is empty.
 SymmetricDistances symmetric(const DistanceStatistics& there, const DistanceStatistics& back);
 
-/// A part of the surface that somebody asked for.
+/// A part of the surface: the hollow, or one that somebody asked for.
 struct ComparedRegion {
   std::string name;
   DistanceStatistics distances;
   DistanceStatistics reverse;    ///< as Comparison::reverseOverlap
   DistanceStatistics unchanged;  ///< the same points against "nothing changed"; count 0 if not asked
+  DistanceStatistics copied;     ///< the same points against "the skin copies the bone"; count 0 if not asked
+
+  /// 1 - RMS / RMS of "nothing changed", or of "the skin copies the bone"; NaN without it.
+  double skill() const;
+  double skillAgainstCopy() const;
 };
 
 struct Histogram {
@@ -78,13 +83,15 @@ struct Comparison : Value {
   std::shared_ptr<const Value> sample;           ///< Mesh or Points with the field "distance" (mm; NaN where excluded)
   std::shared_ptr<const Mesh> reference;         ///< the same for the other way; null if the sample is a cloud
   DistanceStatistics overlap;                    ///< all points with a counterpart
-  DistanceStatistics pit;                        ///< points within the pit region; count 0 if there is none
+  DistanceStatistics pit;                        ///< points where the reference differs from "nothing changed", so that this region
+                                                 ///< depends on the prediction; count 0 if there is none
   DistanceStatistics baselineOverlap, baselinePit;  ///< the same points against "nothing changed"; count 0 if not asked
   DistanceStatistics copiedOverlap, copiedPit;   ///< the same points against "the skin copies the bone"; count 0 if not asked
   DistanceStatistics reverseOverlap, reversePit; ///< from the reference's points to the sample, with the sign turned so that positive
                                                  ///< still means that the sample lies outside; count 0 if the sample is a cloud
   DistanceStatistics everywhere;                 ///< every point, also beyond borders and however far: the paper's Table 1
-  std::vector<ComparedRegion> regions;
+  std::vector<ComparedRegion> regions;           ///< first "hollow", if "nothing changed" was given: the hollow of that surface, the
+                                                 ///< same for every prediction; then those that were asked for
   std::size_t excluded = 0;                      ///< points without a counterpart: beyond a border or too far
   Histogram histogram;
 

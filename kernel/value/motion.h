@@ -40,9 +40,13 @@ struct Motion : Value {
   /// As Scene::layer.
   const std::vector<Vec3>& layer(int l) const { return l == 0 ? outer : l == int(between.size()) + 1 ? inner : between[l - 1]; }
   std::size_t bytes() const override { return ((2 + between.size()) * outer.size() + anchors.size()) * sizeof(Vec3); }
-  /// `before` and `after`: the skin as meshes; `after` has the field "displacement".
+  /// `before` and `after`: the skin as meshes; `after` has the field "displacement". `copied`: the skin if it copied the bone.
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };
+
+/// The skin of `motion.scene` if every point moved as the bones behind it: by the mean displacement of the anchors of its pleura point,
+/// weighted by one over the squared distance. What a prediction must be better than. A point without anchors stays.
+std::vector<Vec3> skinThatCopiesBone(const Motion& motion);
 
 /// Counts the prisms between two layers whose signed volume is not positive; `first` gets the index of the first.
 int countInvertedPrisms(int rows, int columns, const std::vector<Vec3>& outer, const std::vector<Vec3>& inner,

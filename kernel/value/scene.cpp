@@ -72,7 +72,26 @@ std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Motion::parts(
   PointField displacement{"displacement", "mm", {}};
   for (std::size_t i = 0; i < outer.size(); ++i) displacement.values.push_back(distance(outer[i], scene->outer[i]));
   after->fields.push_back(std::move(displacement));
-  return {{"scene", scene}, {"before", before}, {"after", after}};
+  auto copied = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, skinThatCopiesBone(*this)));
+  return {{"scene", scene}, {"before", before}, {"after", after}, {"copied", copied}};
+}
+
+std::vector<Vec3> skinThatCopiesBone(const Motion& motion) {
+  const Scene& scene = *motion.scene;
+  std::vector<Vec3> sum(scene.outer.size());
+  std::vector<double> weights(scene.outer.size());
+  for (std::size_t i = 0; i < scene.anchors.size() && i < motion.anchors.size(); ++i) {
+    const Anchor& anchor = scene.anchors[i];
+    if (anchor.isOnSkin) continue;
+    // Nearer than a hundredth of a millimetre is on the bone.
+    const double weight = 1 / std::max(1e-4, dot(anchor.rest - scene.inner[anchor.point], anchor.rest - scene.inner[anchor.point]));
+    sum[anchor.point] += (motion.anchors[i] - anchor.rest) * weight;
+    weights[anchor.point] += weight;
+  }
+  std::vector<Vec3> skin = scene.outer;
+  for (std::size_t i = 0; i < skin.size(); ++i)
+    if (weights[i] > 0) skin[i] += sum[i] / weights[i];
+  return skin;
 }
 
 int countInvertedPrisms(int rows, int columns, const std::vector<Vec3>& outer, const std::vector<Vec3>& inner,

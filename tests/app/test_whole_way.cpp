@@ -38,7 +38,7 @@ const Runs& runs() {
 TEST(WholeWay, WritesEveryFileThatItNames) {
   const fs::path result = runs().folder / "one";
   const std::string summary = readFile(result / "summary.json");
-  for (const char* name : {"before.ply", "after.ply", "bar.ply", "scene.vtp", "ct_vs_simulated.vtp", "scan_vs_simulated.vtp", "ct_vs_simulated.png",
+  for (const char* name : {"before.ply", "after.ply", "bar.ply", "scene.vtp", "ct_vs_simulated.vtp", "scan_vs_simulated.vtp", "scan_vs_simulated.ply", "ct_vs_simulated_reverse.ply", "ct_vs_simulated.png",
                            "scan_vs_simulated.png", "scan_vs_simulated_histogram.csv", "rib_cage.png", "summary.json"}) {
     EXPECT_TRUE(fs::exists(result / name)) << name;
     EXPECT_GT(fs::file_size(result / name), 40u) << name;
@@ -48,7 +48,7 @@ TEST(WholeWay, WritesEveryFileThatItNames) {
 }
 
 TEST(WholeWay, PrintsTheTable) {
-  for (const char* row : {"ct vs simulated, overlap", "ct vs simulated, pit", "scan vs simulated, overlap", "scan vs simulated, pit", "skill of the prediction", "Haller index before 4.0"})
+  for (const char* row : {"ct vs simulated, overlap", "ct vs simulated, pit", "scan vs simulated, overlap", "scan vs simulated, pit", "scan vs simulated, hollow", "scan, hollow, RMS:", "from skin that copies bone (skill ", "Haller index before 4.0"})
     EXPECT_NE(runs().table.find(row), std::string::npos) << row << "\n" << runs().table;
 }
 

@@ -5,9 +5,11 @@
 
 namespace pectora {
 
-/// Which points of `mesh` lie further than `threshold` from the other surface, and what is within `margin` of those. Lengths in mm.
-/// Points that face the other surface's border count as unchanged. `poll` is called now and then with the fraction done, and may throw.
-std::vector<bool> changedPoints(const Mesh& mesh, const SurfaceTree& other, double threshold, double margin,
-                                const std::function<void(double)>& poll);
+/// Which points lie further than `threshold` from another surface, and what is within `margin` of those. `found` are their closest points
+/// there. Lengths in mm. Points that face the other surface's border count as unchanged.
+std::vector<bool> changedPoints(const std::vector<Vec3>& points, const std::vector<SurfaceHit>& found, double threshold, double margin);
+
+/// The marked points, and those within `margin` (mm) of one.
+std::vector<bool> withMargin(const std::vector<Vec3>& points, std::vector<bool> isMarked, double margin);
 
 }  // namespace pectora

@@ -4,6 +4,7 @@
 #include "kernel/stage/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pectora {
@@ -59,23 +60,69 @@ SurfaceTree::SurfaceTree(const Mesh& mesh) {
   if (bvh_->empty()) throw Error("the mesh has no triangle with an area, so nothing can be measured against it").advise("Give a surface of triangles");
 }
 
-SurfaceHit SurfaceTree::closest(Vec3 p, int near) const {
-  const auto on = [&](int triangle) {
-    const auto& t = topology_->corners(triangle);
-    return closestOnTriangle(p, topology_->point(t[0]), topology_->point(t[1]), topology_->point(t[2]));
-  };
-  NearestTriangle best;
-  if (near >= 0) {
-    // An upper bound only: the search finds its triangle again, or a nearer one.
-    const Vec3 d = p - on(near).point;
-    best.squared = dot(d, d) * (1 + 1e-9) + 1e-18;
-  }
-  bvh_->search(p, best);
-  if (best.triangle < 0) bvh_->search(p, best = {});   // the bound was lost in rounding: far away, or nearly touching
-  const ClosestPoint found = on(best.triangle);
-  const double side = dot(p - found.point, topology_->pseudonormal(best.triangle, found.feature));
+ClosestPoint SurfaceTree::closestOn(int triangle, Vec3 p) const {
+  const auto& t = topology_->corners(triangle);
+  return closestOnTriangle(p, topology_->point(t[0]), topology_->point(t[1]), topology_->point(t[2]));
+}
+
+SurfaceHit SurfaceTree::hitAt(int triangle, const ClosestPoint& found, Vec3 p) const {
+  const double side = dot(p - found.point, topology_->pseudonormal(triangle, found.feature));
   const double length = pectora::distance(p, found.point);
-  return {side < 0 ? -length : length, found.point, best.triangle, found.feature, topology_->isBorder(best.triangle, found.feature)};
+  return {side < 0 ? -length : length, found.point, triangle, found.feature, topology_->isBorder(triangle, found.feature)};
+}
+
+// An upper bound only: the search finds the triangle again, or a nearer one.
+NearestTriangle SurfaceTree::beginAt(int triangle, Vec3 p) const {
+  if (triangle < 0) return {};
+  const Vec3 d = p - closestOn(triangle, p).point;
+  return {dot(d, d) * (1 + 1e-9) + 1e-18, -1};
+}
+
+SurfaceHit SurfaceTree::find(Vec3 p, const TriangleBvh::Start& start, NearestTriangle best) const {
+  bvh_->search(p, start, best);
+  if (best.triangle < 0) bvh_->search(p, bvh_->root(), best = {});   // the bound was lost in rounding: far away, or nearly touching
+  return hitAt(best.triangle, closestOn(best.triangle, p), p);
+}
+
+SurfaceHit SurfaceTree::closest(Vec3 p, int near) const { return find(p, bvh_->root(), beginAt(near, p)); }
+
+void SurfaceTree::closestInTurn(std::span<const Vec3> points, std::span<SurfaceHit> hits) const {
+  constexpr std::size_t kGroup = 16;
+  int near = -1;
+  for (std::size_t first = 0; first < points.size(); first += kGroup) {
+    const std::size_t end = std::min(points.size(), first + kGroup);
+    // A ball that holds the closest points of the whole group.
+    const Vec3 center = points[first];
+    TriangleBvh::Start start = bvh_->root();
+    if (near >= 0) {
+      double radius = 0;
+      for (std::size_t i = first; i < end; ++i) radius = std::max(radius, distance(points[i], center));
+      radius = 2 * radius + std::sqrt(beginAt(near, center).squared);
+      start = bvh_->startFor(center, radius * (1 + 1e-9));
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      const int begin = hits[i].triangle >= 0 ? hits[i].triangle : near;
+      hits[i] = find(points[i], start, beginAt(begin, points[i]));
+      near = hits[i].triangle;
+    }
+  }
+}
+
+SurfaceHit SurfaceTree::closestNearby(Vec3 p, int start) const {
+  const auto squared = [&](const ClosestPoint& c) { return dot(p - c.point, p - c.point); };
+  int triangle = start;
+  ClosestPoint found = closestOn(start, p);
+  for (int last = -1; triangle != last && found.feature != Feature::face;) {
+    last = triangle;
+    // A point on an edge or corner: the others that meet there may come nearer.
+    const auto& corners = topology_->corners(last);
+    const int k = int(found.feature) % 3;
+    for (int t : topology_->trianglesAt(corners[k])) {
+      const ClosestPoint other = closestOn(t, p);
+      if (squared(other) < squared(found)) found = other, triangle = t;
+    }
+  }
+  return hitAt(triangle, found, p);
 }
 
 std::vector<SurfaceHit> SurfaceTree::closest(const std::vector<Vec3>& points, const std::function<void(double)>& poll) const {
@@ -87,9 +134,12 @@ std::vector<SurfaceHit> SurfaceTree::closest(const std::vector<Vec3>& points, co
   for (std::size_t first = 0; first < blocks; first += kRound) {
     poll(double(first) / double(blocks));
     parallelFor(std::min(kRound, blocks - first), [&](std::size_t b) {
-      const std::size_t begin = (first + b) * kBlock, end = std::min(points.size(), begin + kBlock);
-      int near = -1;
-      for (std::size_t i = begin; i < end; ++i) near = (found[order[i]] = closest(points[order[i]], near)).triangle;
+      const std::size_t begin = (first + b) * kBlock, count = std::min(points.size() - begin, kBlock);
+      std::array<Vec3, kBlock> near;
+      std::array<SurfaceHit, kBlock> hits;
+      for (std::size_t i = 0; i < count; ++i) near[i] = points[order[begin + i]];
+      closestInTurn({near.data(), count}, {hits.data(), count});
+      for (std::size_t i = 0; i < count; ++i) found[order[begin + i]] = hits[i];
     });
   }
   return found;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace pectora {
@@ -21,10 +22,21 @@ class TriangleBvh {
   /// finite and below kHuge. Built on all threads, the same for any number of them.
   explicit TriangleBvh(const Mesh& mesh);
 
-  bool empty() const { return blocks_.empty(); }
-  /// The nearest triangle, the first of the mesh among equally near ones; exact in double. `best` may hold a triangle to begin
-  /// with: a near one makes the search shorter, and never changes what it finds. Coordinates of p are below kHuge.
-  void search(Vec3 p, NearestTriangle& best) const;
+  bool empty() const { return blockCount_ == 0; }
+  /// Where a search begins: nodes, or blocks, of one level.
+  struct Start {
+    static constexpr int kMost = 6;
+    int level = 0, count = 0;
+    std::int32_t nodes[kMost];
+  };
+  /// The whole tree.
+  Start root() const { return {int(levels_.size()), 1, {0}}; }
+  /// Nodes that hold every triangle that comes into the ball: a shorter way for points close together.
+  Start startFor(Vec3 center, double radius) const;
+
+  /// The nearest triangle below `start`, the first of the mesh among equally near ones; exact in double. `best` may hold a triangle to
+  /// begin with: a near one makes the search shorter, and never changes what it finds. Coordinates of p are below kHuge.
+  void search(Vec3 p, const Start& start, NearestTriangle& best) const;
 
   static constexpr double kHuge = 1e12;   ///< mm; its square still has a place in a float
 
@@ -43,14 +55,17 @@ class TriangleBvh {
   };
 
  private:
-  void order(const Mesh& mesh, std::vector<std::int32_t>& sorted);
+  struct Local;
+  Local local(Vec3 p) const;
+  std::vector<std::int32_t> order(const Mesh& mesh);
   void fillBlocks(const Mesh& mesh, const std::vector<std::int32_t>& sorted);
   void fillNodes();
   void fillDiscs();
 
   Vec3 center_;
   float extent_ = 0;                        // largest coordinate about the centre, mm
-  std::vector<Block> blocks_;               // leaves, in the tree's order
+  std::size_t blockCount_ = 0;
+  std::unique_ptr<Block[]> blocks_;         // leaves, in the tree's order
   std::vector<std::vector<Node>> levels_;   // node j of level l has the children 8 j ... 8 j + 7 of level l - 1 (of the blocks)
   std::vector<std::vector<Discs>> discs_;   // of the lowest levels, where the surface is nearly flat
 };

@@ -1,12 +1,14 @@
 #include "plugins/comparer/surface/compare.h"
 
 #include "plugins/common/surface/changed.h"
+#include "plugins/comparer/surface/hollow.h"
 
 #include "kernel/stage/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace pectora {
 namespace {
@@ -36,33 +38,58 @@ Histogram makeHistogram(const std::vector<double>& distances, double width) {
   return h;
 }
 
-// The distances of the points that take part, by the region of the reference that they face.
+// What a point belongs to beside the overlap.
+struct Membership {
+  bool isPit = false, isHollow = false;
+};
+
+// The distances of the points that take part, by region of the reference that they face; the hollow is that of "unchanged".
 struct Parts {
-  std::vector<double> overlap, pit;
+  std::vector<double> overlap, pit, hollow;
   std::vector<std::vector<double>> regions;
 
   explicit Parts(const CompareSettings& settings) : regions(settings.regions.size()) {}
-  void add(double d, bool isPit, Vec3 place, const CompareSettings& settings) {
+  void add(double d, Membership in, Vec3 place, const CompareSettings& settings) {
     overlap.push_back(d);
-    if (isPit) pit.push_back(d);
+    if (in.isPit) pit.push_back(d);
+    if (in.isHollow) hollow.push_back(d);
     for (std::size_t r = 0; r < regions.size(); ++r)
       if (settings.regions[r].contains(place)) regions[r].push_back(d);
   }
 };
 
+// The surface before with what follows from it alone, and the pit of a reference against it.
+struct Before {
+  SurfaceTree tree;
+  std::vector<bool> isHollow;                // of its own points
+  std::vector<bool> isPit, facesHollow;      // of the reference's points
+
+  Before(const Mesh& unchanged, const Mesh& reference, const CompareSettings& settings, const Poll& poll) : tree(unchanged) {
+    const std::vector<double> depths = hollowDepths(unchanged);
+    std::vector<bool> isDeep(depths.size());
+    for (std::size_t i = 0; i < depths.size(); ++i) isDeep[i] = depths[i] > settings.pitThreshold;
+    isHollow = withMargin(unchanged.points, std::move(isDeep), settings.pitMargin);
+    const std::vector<SurfaceHit> found = tree.closest(reference.points, poll);
+    isPit = changedPoints(reference.points, found, settings.pitThreshold, settings.pitMargin);
+    for (const SurfaceHit& hit : found) facesHollow.push_back(isAt(isHollow, tree.corners(hit.triangle)));
+  }
+  static bool isAt(const std::vector<bool>& marks, const std::array<int, 3>& corners) { return marks[corners[0]] || marks[corners[1]] || marks[corners[2]]; }
+};
+
 // The way back: from the reference's points to the sample.
-void measureBack(const Mesh& sample, const Mesh& reference, const std::vector<bool>& pit, const CompareSettings& settings, const Poll& poll, Comparison& result) {
+void measureBack(const Mesh& sample, const Mesh& reference, const Before* before, const CompareSettings& settings, const Poll& poll, Comparison& result) {
   const std::vector<SurfaceHit> found = SurfaceTree(sample).closest(reference.points, poll);
   std::vector<double> field(found.size(), kNoValue);
   Parts parts(settings);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (judge(found[i], settings) != kTakesPart) continue;
     field[i] = -found[i].distance;
-    parts.add(field[i], !pit.empty() && pit[i], reference.points[i], settings);
+    parts.add(field[i], before ? Membership{before->isPit[i], before->facesHollow[i]} : Membership{}, reference.points[i], settings);
   }
   result.reverseOverlap = statistics(std::move(parts.overlap));
   result.reversePit = statistics(std::move(parts.pit));
-  for (std::size_t r = 0; r < parts.regions.size(); ++r) result.regions[r].reverse = statistics(std::move(parts.regions[r]));
+  if (before) result.regions.front().reverse = statistics(std::move(parts.hollow));
+  for (std::size_t r = 0; r < parts.regions.size(); ++r) result.regions[r + (before != nullptr)].reverse = statistics(std::move(parts.regions[r]));
   auto colored = std::make_shared<Mesh>(reference);
   colored->fields = {{"distance", "mm", std::move(field)}};
   result.reference = std::move(colored);
@@ -87,12 +114,11 @@ Comparison compareSurfaces(std::shared_ptr<const Value> sample, const Surfaces& 
   int step = 0;
   const auto next = [&] { return [&poll, steps, now = step++](double f) { poll((now + f) / steps); }; };
   const std::vector<SurfaceHit> found = SurfaceTree(reference).closest(points, next());
-  std::vector<SurfaceHit> before, copied;
-  std::vector<bool> pit;
+  std::vector<SurfaceHit> unchanged, copied;
+  std::optional<Before> before;
   if (surfaces.unchanged) {
-    const SurfaceTree unchanged(*surfaces.unchanged);
-    pit = changedPoints(reference, unchanged, settings.pitThreshold, settings.pitMargin, next());
-    before = unchanged.closest(points, next());
+    before.emplace(*surfaces.unchanged, reference, settings, next());
+    unchanged = before->tree.closest(points, next());
   }
   if (surfaces.copied) copied = SurfaceTree(*surfaces.copied).closest(points, next());
 
@@ -100,29 +126,31 @@ Comparison compareSurfaces(std::shared_ptr<const Value> sample, const Surfaces& 
   Comparison result;
   result.name = settings.name;
   PointField distances{"distance", "mm", std::vector<double>(points.size(), kNoValue)}, leftOut{"left_out", "", std::vector<double>(points.size())};
-  PointField inPit{"pit", "", std::vector<double>(before.size())}, unchangedDistances{"unchanged_distance", "mm", std::vector<double>(before.size(), kNoValue)};
+  PointField inPit{"pit", "", std::vector<double>(unchanged.size())}, inHollow{"hollow", "", std::vector<double>(unchanged.size())};
+  PointField unchangedDistances{"unchanged_distance", "mm", std::vector<double>(unchanged.size(), kNoValue)};
   Parts here(settings), unchangedParts(settings), copiedParts(settings);
   std::vector<double> everywhere(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     everywhere[i] = found[i].distance;
     LeftOut why = judge(found[i], settings);
-    if (why == kTakesPart && surfaces.unchanged) why = judge(before[i], settings);
+    if (why == kTakesPart && surfaces.unchanged) why = judge(unchanged[i], settings);
     if (why == kTakesPart && surfaces.copied) why = judge(copied[i], settings);
     leftOut.values[i] = why;
     if (why != kTakesPart) {
       ++result.excluded;
       continue;
     }
-    const auto& corners = reference.triangles[found[i].triangle];
-    const bool isPit = !pit.empty() && (pit[corners[0]] || pit[corners[1]] || pit[corners[2]]);
-    distances.values[i] = found[i].distance;
-    here.add(found[i].distance, isPit, found[i].point, settings);
-    if (surfaces.unchanged) {
-      inPit.values[i] = isPit;
-      unchangedDistances.values[i] = before[i].distance;
-      unchangedParts.add(before[i].distance, isPit, found[i].point, settings);
+    Membership in;
+    if (before) {
+      in = {Before::isAt(before->isPit, reference.triangles[found[i].triangle]), Before::isAt(before->isHollow, before->tree.corners(unchanged[i].triangle))};
+      inPit.values[i] = in.isPit;
+      inHollow.values[i] = in.isHollow;
+      unchangedDistances.values[i] = unchanged[i].distance;
+      unchangedParts.add(unchanged[i].distance, in, found[i].point, settings);
     }
-    if (surfaces.copied) copiedParts.add(copied[i].distance, isPit, found[i].point, settings);
+    distances.values[i] = found[i].distance;
+    here.add(found[i].distance, in, found[i].point, settings);
+    if (surfaces.copied) copiedParts.add(copied[i].distance, in, found[i].point, settings);
   }
   if (here.overlap.empty())
     throw Error("the two surfaces do not overlap: no point has a counterpart").advise("Register them first, and check the units");
@@ -135,13 +163,16 @@ Comparison compareSurfaces(std::shared_ptr<const Value> sample, const Surfaces& 
   result.baselinePit = statistics(std::move(unchangedParts.pit));
   result.copiedOverlap = statistics(std::move(copiedParts.overlap));
   result.copiedPit = statistics(std::move(copiedParts.pit));
-  for (std::size_t r = 0; r < settings.regions.size(); ++r)
-    result.regions.push_back({settings.regions[r].name, statistics(std::move(here.regions[r])), {}, statistics(std::move(unchangedParts.regions[r]))});
-  if (measuresBack) measureBack(*mesh, reference, pit, settings, next(), result);
+  const auto addRegion = [&](const std::string& name, std::vector<double>& own, std::vector<double>& beforehand, std::vector<double>& copy) {
+    result.regions.push_back({name, statistics(std::move(own)), {}, statistics(std::move(beforehand)), statistics(std::move(copy))});
+  };
+  if (before) addRegion("hollow", here.hollow, unchangedParts.hollow, copiedParts.hollow);
+  for (std::size_t r = 0; r < settings.regions.size(); ++r) addRegion(settings.regions[r].name, here.regions[r], unchangedParts.regions[r], copiedParts.regions[r]);
+  if (measuresBack) measureBack(*mesh, reference, before ? &*before : nullptr, settings, next(), result);
 
   // The sample with its figures point by point, for pictures and files.
   std::vector<PointField> fields{std::move(distances), std::move(leftOut)};
-  if (surfaces.unchanged) fields.insert(fields.end(), {std::move(inPit), std::move(unchangedDistances)});
+  if (surfaces.unchanged) fields.insert(fields.end(), {std::move(inPit), std::move(inHollow), std::move(unchangedDistances)});
   if (mesh) {
     auto colored = std::make_shared<Mesh>(*mesh);
     colored->fields = std::move(fields);

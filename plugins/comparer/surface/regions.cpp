@@ -25,7 +25,7 @@ Region parseRegion(const std::string& text) {
   std::string rest, shape;
   if (!(before >> region.name) || before >> rest || region.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
     throw wrong("the name of a region has small letters, digits and _");
-  for (const char* taken : {"overlap", "pit", "paper", "unchanged", "copied", "reverse", "symmetric"})
+  for (const char* taken : {"overlap", "pit", "hollow", "paper", "unchanged", "copied", "reverse", "symmetric"})
     if (region.name == taken) throw wrong("this name of a region is taken");
   after >> shape;
   region.isBall = shape == "ball";

@@ -10,8 +10,8 @@ class Surface final : public Stage {
   void describe(Visitor& v) override {
     v.text("name", settings_.name, TextRole::plain, "Name of the comparison in reports, letters, digits and _");
     v.real("max_distance", settings_.maxDistance, "mm", {0.1, 1000}, {10, 80}, "Points further away than this have no counterpart and are left out");
-    v.real("pit_threshold", settings_.pitThreshold, "mm", {0, 100}, {1, 6}, "The pit region is where the reference differs from unchanged by more than this");
-    v.real("pit_margin", settings_.pitMargin, "mm", {0, 200}, {0, 30}, "What lies within this of it belongs to the pit region, too");
+    v.real("pit_threshold", settings_.pitThreshold, "mm", {0, 100}, {1, 6}, "The pit is where the reference differs from unchanged by more than this, the hollow where unchanged lies deeper than this behind a string over its front");
+    v.real("pit_margin", settings_.pitMargin, "mm", {0, 200}, {0, 30}, "What lies within this of pit and hollow belongs to them, too");
     v.real("bin_width", settings_.binWidth, "mm", {0.01, 100}, {0.1, 2}, "Width of the histogram's bins");
     v.choice("mode", mode_, {"full", "paper"}, "full: points beyond a border or too far are left out; paper: every point counts, as in the paper's Table 1");
     v.flag("both_ways", settings_.bothWays, "Measure from the reference to the sample, too, if that is a mesh: symmetric mean, RMS, HD95 and Hausdorff distance");
@@ -43,7 +43,7 @@ class Surface final : public Stage {
 }  // namespace
 
 PECTORA_STAGE(Surface, {.id = "comparer.surface", .version = "1.0",
-                        .summary = "Signed distances between two surfaces, over overlap, pit and regions, against nothing changed and skin that copies bone",
+                        .summary = "Signed distances between two surfaces, over overlap, pit, hollow and regions, against nothing changed and skin that copies bone",
                         .references = "Baerentzen and Aanaes, IEEE TVCG 2005 (sign); Moreira et al., SPIE 2012 (mean, SD, min, max)",
                         .inputs = {{"sample", {"Points", "Mesh"}}, {"reference", {"Mesh"}}, {"unchanged", {"Mesh"}, true}, {"copied", {"Mesh"}, true}},
                         .outputs = {{"comparison", {"Comparison"}}}})

@@ -9,21 +9,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace pectora {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
-constexpr int kHoldOut = 20;        // every twentieth point
+constexpr std::size_t kHoldOut = 20;       // every twentieth point is held out,
+constexpr std::size_t kHeldOut = 10000;    // but about so many at the most: they give an RMS to a hundredth
 constexpr std::size_t kFewest = 30; // points that an alignment needs at least
+constexpr double kStill = 1e-3;     // points that moved less than this part of the radius are looked for near their last counterpart
+
+enum class Search { whole, nearby };
 
 enum Pair : char { kPaired, kFar, kBorder, kNormal, kChanged, kKinds };
 
 // What is known of one moving point in the present iteration.
 struct Sample {
   Vec3 start, startNormal;   // before any iteration
-  Vec3 point, direction;     // now, and the normal of its counterpart's triangle
+  Vec3 direction;            // normal of its counterpart's triangle
   double distance = 0;
   int near = -1;
   Pair pair = kFar;
@@ -33,14 +40,16 @@ class Alignment {
  public:
   Alignment(const MovingPoints& moving, const Mesh& fixed, const Mesh* changed, const IcpSettings& settings, const std::function<void(double)>& poll)
       : settings_(settings), tree_(fixed), poll_(poll) {
-    if (changed) changed_ = changedPoints(fixed, SurfaceTree(*changed), settings.changeThreshold, settings.changeMargin, [](double) {});
+    if (changed) changed_ = changedPoints(fixed.points, SurfaceTree(*changed).closest(fixed.points, [](double) {}), settings.changeThreshold, settings.changeMargin);
     // Along a curve that fills space, so that every n-th point is spread evenly and neighbours share their way through the tree.
     const std::vector<std::int32_t> order = spatialOrder(moving.points);
+    all_.reserve(order.size());
+    const std::size_t stride = std::max(kHoldOut, order.size() / kHeldOut);
     for (std::size_t i = 0; i < order.size(); ++i) {
       Sample sample;
       sample.start = moving.points[order[i]];
       if (!moving.normals.empty()) sample.startNormal = moving.normals[order[i]];
-      (i % kHoldOut == kHoldOut - 1 ? heldOut_ : all_).push_back(sample);
+      (i % stride == stride - 1 ? heldOut_ : all_).push_back(sample);
     }
     for (const Sample& s : all_) equations_.center += s.start / double(all_.size());
     double squares = 0;
@@ -55,10 +64,11 @@ class Alignment {
       const bool isLast = 3 * wanted >= finest;
       std::vector<Sample> level;
       const std::size_t count = isLast ? finest : wanted;
-      level.reserve(count);
-      for (std::size_t i = 0; i < count; ++i) level.push_back(all_[i * all_.size() / count]);
+      if (count == all_.size()) level = std::move(all_);
+      else
+        for (std::size_t i = 0; i < count; ++i) level.push_back(all_[i * all_.size() / count]);
       // A coarse level only has to come near: the scatter of its points is what it can see.
-      runLevel(level, isLast ? settings_.tolerance : std::max(settings_.tolerance, 0.05));
+      runLevel(level, isLast ? settings_.tolerance : std::max(settings_.tolerance, 0.1));
       if (isLast) return report(level);
     }
   }
@@ -66,43 +76,53 @@ class Alignment {
  private:
   void runLevel(std::vector<Sample>& samples, double tolerance) {
     converged_ = false;
+    double moved = std::numeric_limits<double>::infinity();   // since the whole surface was searched
     while (!converged_ && iterations_ < settings_.maxIterations) {
-      poll_(double(iterations_) / settings_.maxIterations);
       ++iterations_;
-      pairAll(samples);
-      const NormalEquations equations = accumulate(samples);
-      solved_ = solve(equations);
-      map_ = compose(rigidStep(equations, solved_.step), map_);
+      const Search search = moved < kStill * equations_.radius ? Search::nearby : Search::whole;
+      if (search == Search::whole) moved = 0;
+      pairAll(samples, search);
+      sums_ = accumulate(samples);
+      solved_ = solve(sums_);
+      map_ = compose(rigidStep(sums_, solved_.step), map_);
       // The furthest that a point can move: twice the radius holds nearly all of them.
-      converged_ = solved_.step.tail<3>().norm() + 2 * solved_.step.head<3>().norm() < tolerance;
+      const double reach = solved_.step.tail<3>().norm() + 2 * solved_.step.head<3>().norm();
+      moved += reach;
+      converged_ = reach < tolerance;
     }
   }
 
-  void pairAll(std::vector<Sample>& samples) const {
+  void pairAll(std::vector<Sample>& samples, Search search) const {
     constexpr std::size_t kRound = 64;
     const std::size_t blocks = (samples.size() + kBlock - 1) / kBlock;
     for (std::size_t first = 0; first < blocks; first += kRound) {
       poll_(double(iterations_) / settings_.maxIterations);
       parallelFor(std::min(kRound, blocks - first), [&](std::size_t b) {
-        const std::size_t begin = (first + b) * kBlock, end = std::min(samples.size(), begin + kBlock);
-        int near = -1;
-        for (std::size_t i = begin; i < end; ++i) {
-          pairOne(samples[i], samples[i].near >= 0 ? samples[i].near : near);
-          near = samples[i].near;
-        }
+        const std::size_t begin = (first + b) * kBlock, count = std::min(samples.size() - begin, kBlock);
+        pairBlock({&samples[begin], count}, search);
       });
     }
   }
 
-  void pairOne(Sample& s, int near) const {
-    s.point = map_(s.start);
-    const SurfaceHit hit = tree_.closest(s.point, near);
-    s.near = hit.triangle;
-    s.distance = hit.distance;
-    // The face's normal. (The direction from the counterpart to the point would turn with every noise at edges and corners.)
-    const Vec3 normal = tree_.normal(hit.triangle);
-    s.direction = normal;
-    s.pair = judge(s, hit, normal);
+  void pairBlock(std::span<Sample> samples, Search search) const {
+    std::array<Vec3, kBlock> points;
+    std::array<SurfaceHit, kBlock> hits;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      points[i] = map_(samples[i].start);
+      hits[i].triangle = samples[i].near;
+    }
+    if (search == Search::nearby)
+      for (std::size_t i = 0; i < samples.size(); ++i) hits[i] = tree_.closestNearby(points[i], hits[i].triangle);
+    else
+      tree_.closestInTurn({points.data(), samples.size()}, {hits.data(), samples.size()});
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      Sample& s = samples[i];
+      s.near = hits[i].triangle;
+      s.distance = hits[i].distance;
+      // The face's normal. (The direction from the counterpart to the point would turn with every noise at edges and corners.)
+      s.direction = tree_.normal(s.near);
+      s.pair = judge(s, hits[i], s.direction);
+    }
   }
 
   Pair judge(const Sample& s, const SurfaceHit& hit, Vec3 normal) const {
@@ -119,16 +139,17 @@ class Alignment {
 
   // Tukey's weights about zero, scaled by the median absolute distance; beyond the overlap's share, nothing.
   NormalEquations accumulate(const std::vector<Sample>& samples) {
+    // Quantiles of so many are known to half a percent.
+    constexpr std::size_t kEnough = 100000;
+    const std::size_t stride = samples.size() / kEnough + 1;
     std::vector<double> distances;
+    std::array<std::size_t, kKinds> kinds{};
     for (const Sample& s : samples)
-      if (s.pair == kPaired) distances.push_back(std::abs(s.distance));
-    if (distances.size() < kFewest) {
-      std::array<std::size_t, kKinds> kinds{};
-      for (const Sample& s : samples) ++kinds[s.pair];
-      throw Error("too few points of the moving surface have a counterpart on the fixed one").given(std::to_string(distances.size())).allowed(fmt::format("{} or more", kFewest))
+      if (kinds[s.pair]++ % stride == 0 && s.pair == kPaired) distances.push_back(std::abs(s.distance));
+    if (kinds[kPaired] < kFewest)
+      throw Error("too few points of the moving surface have a counterpart on the fixed one").given(std::to_string(kinds[kPaired])).allowed(fmt::format("{} or more", kFewest))
           .advise(fmt::format("Of {} points, {} are too far away, {} beyond the border, {} have another normal, {} lie where the operation changes the surface: align by landmarks first, and check units and settings",
                               samples.size(), kinds[kFar], kinds[kBorder], kinds[kNormal], kinds[kChanged]));
-    }
     const auto quantile = [&](double q) {
       const auto at = distances.begin() + std::ptrdiff_t(q * double(distances.size() - 1));
       std::nth_element(distances.begin(), at, distances.end());
@@ -146,7 +167,7 @@ class Alignment {
         const double ratio = s.distance / cut;
         if (s.pair != kPaired || std::abs(s.distance) > furthest || !(ratio * ratio < 1)) continue;
         const double root = 1 - ratio * ratio;
-        parts[b].add(s.point, s.direction, s.distance, root * root);
+        parts[b].add(map_(s.start), s.direction, s.distance, root * root);
       }
     });
     NormalEquations sum = equations_;
@@ -155,18 +176,17 @@ class Alignment {
   }
 
   Registration report(std::vector<Sample>& samples) {
-    const NormalEquations equations = accumulate(samples);
     Registration result;
     result.method = "icp";
     result.map = map_;
-    result.rms = std::sqrt(equations.squares / double(equations.count));
+    result.rms = std::sqrt(sums_.squares / double(sums_.count));
     auto& details = result.details;
     details.push_back({"status", std::string(!converged_ ? "stopped" : solved_.undetermined > 0 ? "undetermined" : "converged"), ""});
     details.push_back({"iterations", double(iterations_), ""});
     std::array<std::size_t, kKinds> kinds{};
     for (const Sample& s : samples) ++kinds[s.pair];
-    details.push_back({"used_points", double(equations.count), ""});
-    details.push_back({"outliers", double(kinds[kPaired] - equations.count), ""});
+    details.push_back({"used_points", double(sums_.count), ""});
+    details.push_back({"outliers", double(kinds[kPaired] - sums_.count), ""});
     details.push_back({"far_points", double(kinds[kFar]), ""});
     details.push_back({"border_points", double(kinds[kBorder]), ""});
     details.push_back({"points_with_another_normal", double(kinds[kNormal]), ""});
@@ -176,7 +196,7 @@ class Alignment {
     const std::size_t held = std::min(heldOut_.size(), samples.size() / kHoldOut + 1);
     for (std::size_t i = 0; i < held; ++i) heldOut_[i] = heldOut_[i * heldOut_.size() / held];
     heldOut_.resize(held);
-    pairAll(heldOut_);
+    pairAll(heldOut_, Search::whole);
     double squares = 0;
     std::size_t count = 0;
     for (const Sample& s : heldOut_)
@@ -199,7 +219,7 @@ class Alignment {
       for (int a = 0; a < 3; ++a) {
         Vec3 unit;
         unit[a] = 1;
-        const Vector6 j = equations_.row(samples[i].point, unit);
+        const Vector6 j = equations_.row(map_(samples[i].start), unit);
         expected += variance * j.dot(solved_.inverse * j);
       }
     details.push_back({"expected_error", std::sqrt(expected / double(seen)), "mm"});
@@ -212,6 +232,7 @@ class Alignment {
   const std::function<void(double)>& poll_;
   std::vector<Sample> all_, heldOut_;
   NormalEquations equations_;          // empty, with centre and radius
+  NormalEquations sums_;               // of the last iteration
   AffineMap map_;
   Solved solved_;
   double scale_ = 0;
@@ -229,16 +250,6 @@ Registration alignSurface(const MovingPoints& moving, const Mesh& fixed, const M
   if (moving.points.size() < kFewest)
     throw Error("the moving surface has too few points").of("moving").given(std::to_string(moving.points.size())).allowed(fmt::format("{} or more", kFewest));
   return Alignment(moving, fixed, changed, settings, poll).run();
-}
-
-std::vector<Vec3> pointNormals(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.points.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 n = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
-    for (int corner : t) normals[corner] += n;
-  }
-  for (Vec3& n : normals) n = normalized(n);
-  return normals;
 }
 
 }  // namespace pectora

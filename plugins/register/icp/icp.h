@@ -17,7 +17,7 @@ struct IcpSettings {
   double ballRadius = 0;
   int coarsePoints = 5000;       ///< of the first level; each further one has ten times as many, the last one all
   int maxIterations = 100;       ///< over all levels
-  double tolerance = 0.02;       ///< converged when no point moves further in one iteration, mm; the next would move a tenth of it
+  double tolerance = 0.005;      ///< converged when no point moves further in one iteration, mm; the next would move about a sixth of it
   int finePoints = 2000000;       ///< of the last level, at most
 };
 
@@ -40,8 +40,5 @@ struct MovingPoints {
 /// Throws Error if too few points take part. `poll` is called with the fraction done, and may throw.
 Registration alignSurface(const MovingPoints& moving, const Mesh& fixed, const Mesh* changed, const IcpSettings& settings,
                           const std::function<void(double)>& poll);
-
-/// Unit normals of a mesh's points, weighted by the triangles' areas; zero where no triangle has one.
-std::vector<Vec3> pointNormals(const Mesh& mesh);
 
 }  // namespace pectora

@@ -1,3 +1,4 @@
+#include "plugins/common/surface/point_normals.h"
 #include "plugins/register/icp/icp.h"
 
 #include "kernel/stage/plugin.h"

@@ -35,6 +35,8 @@ std::string ply(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
                 const std::vector<std::array<int, 3>>* triangles, const std::vector<PointField>& fields, const FileNote& note) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS mm\n";
   bytes += "comment pectora record " + note.recordKey + "\n";
+  for (const PointField& f : fields)
+    if (!f.unit.empty()) bytes += fmt::format("comment {} is in {}\n", f.name, f.unit);
   bytes += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", points.size());
   if (!normals.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
   for (const PointField& f : fields) bytes += "property float " + f.name + "\n";

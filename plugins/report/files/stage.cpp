@@ -95,17 +95,19 @@ class Files final : public Stage {
       const FileNote note{handle.record->key};
       std::vector<double> distances;
       if (const auto* mesh = dynamic_cast<const Mesh*>(comparison.sample.get())) {
-        writeFile(file(comparison.name + ".vtp"), vtpBytes(*mesh, note));
+        writeSurface(comparison.name, *mesh, note);
         distances = fieldValues(mesh->fields);
       } else if (const auto* points = dynamic_cast<const Points*>(comparison.sample.get())) {
-        writeFile(file(comparison.name + ".vtp"), vtpBytes(*points, note));
+        writeSurface(comparison.name, *points, note);
         distances = fieldValues(points->fields);
       }
+      if (comparison.reference) writeSurface(comparison.name + "_reverse", *comparison.reference, note);
       const double limit = colorLimit_ > 0 ? colorLimit_ : roundLimit(distances);
       std::string title = comparison.name;
       std::replace(title.begin(), title.end(), '_', ' ');
-      surfacePicture(*comparison.sample, "distance", limit, "Signed distance: " + title, {caption("whole overlap", comparison.overlap), caption("pit region", comparison.pit)})
-          .write(file(comparison.name + ".png"));
+      std::vector<std::string> captions{caption("whole overlap", comparison.overlap), caption("pit region", comparison.pit)};
+      for (const ComparedRegion& region : comparison.regions) captions.push_back(caption(region.name, region.distances));
+      surfacePicture(*comparison.sample, "distance", limit, "Signed distance: " + title, captions).write(file(comparison.name + ".png"));
       std::string csv = "low_mm,high_mm,points\n";
       for (std::size_t i = 0; i < comparison.histogram.counts.size(); ++i) {
         const double low = comparison.histogram.low + double(i) * comparison.histogram.binWidth;
@@ -113,6 +115,13 @@ class Files final : public Stage {
       }
       writeFile(file(comparison.name + "_histogram.csv"), csv);
     }
+  }
+
+  // With its figures point by point, for ParaView and Slicer (VTP), and for MeshLab and CloudCompare (PLY).
+  template <class Surface>
+  void writeSurface(const std::string& name, const Surface& surface, const FileNote& note) {
+    writeFile(file(name + ".vtp"), vtpBytes(surface, note));
+    writeFile(file(name + ".ply"), plyBytes(surface, note));
   }
 
   static std::vector<double> fieldValues(const std::vector<PointField>& fields) {

@@ -35,6 +35,7 @@ class ScanFile final : public Stage {
     for (const std::string& note : surface.notes) host.warn(note);
 
     const double scale = millimetresPerUnit(units_, surface.points);
+    if (units_.empty()) host.info("coordinates are taken as millimetres, in which the scan has the size of a torso; units=... says otherwise");
     for (Vec3& p : surface.points) p *= scale;
     if (!surface.triangles.empty()) {
       auto mesh = std::make_shared<Mesh>();

@@ -19,11 +19,16 @@ double millimetresPerUnit(const std::string& units, std::span<const Vec3> points
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
   const Vec3 size = high - low;
   const double extent = std::max({size.x, size.y, size.z});
-  if (extent >= 100 && extent <= 2500) return 1;
+  const auto isTorso = [](double mm) { return mm >= 100 && mm <= 2500; };
+  if (isTorso(extent)) return 1;
+  // Which units would make it a torso.
+  std::string fitting;
+  for (const auto& [unit, scale] : {std::pair{"cm", 10.0}, {"m", 1000.0}, {"inch", 25.4}})
+    if (isTorso(scale * extent)) fitting += fmt::format("{}{:.4g} mm with \"{}\"", fitting.empty() ? "" : ", ", scale * extent, unit);
   throw Error("the unit of the file is not known, and in millimetres the scan would not be the size of a torso")
       .of("units").given(fmt::format("a largest extent of {:.4g}", extent))
       .allowed("mm, cm, m or inch")
-      .advise(fmt::format("Give units: it would be {:.4g} mm with \"cm\", {:.4g} mm with \"m\", {:.4g} mm with \"inch\"", 10 * extent, 1000 * extent, 25.4 * extent));
+      .advise(fitting.empty() ? "No unit makes it a torso: check the file, or give units nevertheless" : "Give units: it would be " + fitting);
 }
 
 }  // namespace pectora

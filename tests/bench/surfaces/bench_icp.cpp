@@ -1,5 +1,6 @@
 #include "tests/bench/surfaces/figures.h"
 
+#include "plugins/common/surface/point_normals.h"
 #include "plugins/register/icp/icp.h"
 
 using namespace pectora;

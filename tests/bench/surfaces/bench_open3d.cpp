@@ -44,7 +44,8 @@ void distanceOpen3d(benchmark::State& state, bool byParity) {
       distances.push_back(std::copysign(norm(d), dot(d, {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]})));
     }
   }
-  countDistances(state, distances, n);
+  const std::vector<double> ours = ourDistances(fixed, sample);
+  countDistances(state, distances, n, &ours);
 }
 
 void icpOpen3d(benchmark::State& state) {

@@ -3,6 +3,8 @@
 
 #include "tests/bench/surfaces/chest_fields.h"
 
+#include "plugins/common/surface/surface_tree.h"
+
 #include "kernel/value/comparison.h"
 
 #include <benchmark/benchmark.h>
@@ -17,8 +19,9 @@ inline std::vector<double> trueDistances(int n) {
   return distances;
 }
 
-/// Adds error against truth, wrong signs, and the paper's four figures to a benchmark's counters.
-inline void countDistances(benchmark::State& state, const std::vector<double>& distances, int n) {
+/// Adds error against truth, wrong signs, and the paper's four figures to a benchmark's counters; `ours`, if it is another program's:
+/// how far its distances and its figures lie from these.
+inline void countDistances(benchmark::State& state, const std::vector<double>& distances, int n, const std::vector<double>* ours = nullptr) {
   const std::vector<double> truth = trueDistances(n);
   double largest = 0, wrong = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -32,6 +35,19 @@ inline void countDistances(benchmark::State& state, const std::vector<double>& d
   state.counters["sd"] = s.sd;
   state.counters["min"] = s.min;
   state.counters["max"] = s.max;
+  if (!ours) return;
+  double apart = 0;
+  for (std::size_t i = 0; i < ours->size(); ++i) apart = std::max(apart, std::abs(distances[i] - (*ours)[i]));
+  const DistanceStatistics o = statistics(*ours);
+  state.counters["distances_apart_mm"] = apart;
+  state.counters["figures_apart_mm"] = std::max({std::abs(s.mean - o.mean), std::abs(s.sd - o.sd), std::abs(s.min - o.min), std::abs(s.max - o.max)});
+}
+
+/// Pectora's distances on the same surfaces.
+inline std::vector<double> ourDistances(const Mesh& fixed, const Mesh& sample) {
+  std::vector<double> distances;
+  for (const SurfaceHit& hit : SurfaceTree(fixed).closest(sample.points, [](double) {})) distances.push_back(hit.distance);
+  return distances;
 }
 
 /// RMS distance of displaced targets from where a map brings them back to.

@@ -23,6 +23,28 @@ TEST(LayerMesh, TrianglesFaceOutOfTheBody) {
     EXPECT_LT(cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]).y, 0);
 }
 
+TEST(SkinThatCopiesBone, MovesAsTheMeanOfTheAnchorsBehindItByTheirNearness) {
+  auto scene = std::make_shared<Scene>();
+  scene->rows = 2, scene->columns = 3;
+  flatWall(2, 3, scene->outer, scene->inner);
+  Motion motion;
+  // Point 0: a moving bone 1 mm away and a still one 2 mm away; point 1: on the bone; point 2: none; point 3: held on the skin only.
+  const auto anchor = [&](int point, Vec3 off, Vec3 move, bool isOnSkin) {
+    scene->anchors.push_back({point, BodyKind::sternum, 0, 0, (isOnSkin ? scene->outer : scene->inner)[point] + off, isOnSkin});
+    motion.anchors.push_back(scene->anchors.back().rest + move);
+  };
+  anchor(0, {0, 1, 0}, {0, -10, 0}, false);
+  anchor(0, {0, 0, 2}, {0, 0, 0}, false);
+  anchor(1, {0, 0, 0}, {1, -30, 2}, false);
+  anchor(3, {0, 0, 0}, {0, -5, 0}, true);
+  motion.scene = scene;
+  const std::vector<Vec3> skin = skinThatCopiesBone(motion);
+  EXPECT_NEAR(skin[0].y, -20 - 10 * (1.0 / (1.0 + 0.25)), 1e-12);
+  EXPECT_LT(distance(skin[1], scene->outer[1] + Vec3{1, -30, 2}), 1e-12);
+  EXPECT_EQ(skin[2], scene->outer[2]);
+  EXPECT_EQ(skin[3], scene->outer[3]);
+}
+
 TEST(InvertedPrisms, AreNoneAtRest) {
   std::vector<Vec3> outer, inner;
   flatWall(5, 6, outer, inner);

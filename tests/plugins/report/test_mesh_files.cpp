@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -38,6 +39,24 @@ TEST(PlyFile, IsReadBackByOurOwnReader) {
   ASSERT_EQ(s.points.size(), 3u);
   EXPECT_EQ(s.points[2], (Vec3{0, 10, 5}));
   EXPECT_EQ(s.triangles[0], (std::array<int, 3>{0, 1, 2}));
+}
+
+TEST(PlyFile, HoldsTheFieldsAsPropertiesOfTheVerticesWithTheirUnit) {
+  Points points;
+  points.points = {{1, 2, 3}, {4, 5, 6}};
+  points.normals = {{0, 0, 1}, {0, 1, 0}};
+  points.fields = {{"distance", "mm", {-0.5, std::nan("")}}, {"pit", "", {1, 0}}};
+  const std::string bytes = plyBytes(points, {"key"});
+  EXPECT_NE(bytes.find("comment distance is in mm\n"), std::string::npos);
+  EXPECT_NE(bytes.find("property float nz\nproperty float distance\nproperty float pit\nend_header\n"), std::string::npos);
+  float values[16];
+  ASSERT_EQ(bytes.size() - bytes.find("end_header\n") - 11, sizeof values);
+  std::memcpy(values, bytes.data() + bytes.size() - sizeof values, sizeof values);
+  EXPECT_EQ(values[6], -0.5f);
+  EXPECT_EQ(values[7], 1);
+  EXPECT_EQ(values[8], 4);
+  EXPECT_TRUE(std::isnan(values[14]));
+  EXPECT_EQ(values[15], 0);
 }
 
 TEST(PlyFile, CarriesItsRecord) { EXPECT_NE(plyBytes(triangle(), {"0123abcd"}).find("pectora record 0123abcd"), std::string::npos); }

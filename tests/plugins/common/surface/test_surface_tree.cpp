@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -144,6 +145,65 @@ TEST(SurfaceTree, TakesAnyTriangleToBeginWith) {
   }
   // A corner of the mesh itself, where the distance to begin with is exactly zero.
   for (int near = 0; near < 40; ++near) EXPECT_EQ(tree.closest(mesh.points[40], near).distance, 0);
+}
+
+TEST(SurfaceTree, FollowsAPointThatMovesAroundAConvexBody) {
+  // Seen from outside, the nearest place nearby is the nearest of all.
+  const SurfaceTree tree(cube());
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> step(-0.4, 0.4);
+  Vec3 p{1.5, 0, 0};
+  int near = tree.closest(p).triangle;
+  std::vector<bool> visited(12);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 next = p + Vec3{step(random), step(random), step(random)};
+    const double size = std::max({std::abs(next.x), std::abs(next.y), std::abs(next.z)});
+    if (size < 1.01 || size > 2) continue;
+    p = next;
+    const SurfaceHit hit = tree.closestNearby(p, near);
+    ASSERT_NEAR(hit.distance, tree.closest(p).distance, 1e-12) << i;
+    near = hit.triangle;
+    visited[near] = true;
+  }
+  EXPECT_EQ(std::count(visited.begin(), visited.end(), true), 12);
+}
+
+TEST(SurfaceTree, FollowsAPointInAFoldToWithinTwiceItsWay) {
+  const SurfaceTree tree(sheet(40));
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> along(2, 37), off(-0.8, 0.8), small(-0.05, 0.05);
+  int exact = 0;
+  constexpr int kCount = 2000;
+  for (int i = 0; i < kCount; ++i) {
+    const double x = along(random), z = along(random);
+    const Vec3 p{x, 1.5 * std::sin(0.6 * x) * std::cos(0.4 * z) + off(random), z}, way{small(random), small(random), small(random)};
+    const SurfaceHit followed = tree.closestNearby(p + way, tree.closest(p).triangle), truth = tree.closest(p + way);
+    EXPECT_GE(std::abs(followed.distance), std::abs(truth.distance) - 1e-12);
+    EXPECT_LE(std::abs(followed.distance), std::abs(truth.distance) + 2 * norm(way));
+    exact += std::abs(followed.distance - truth.distance) < 1e-12;
+  }
+  EXPECT_GT(exact, 0.9 * kCount);
+}
+
+TEST(SurfaceTree, GivesPointsInTurnTheSameAsOneByOneHoweverTheyLie) {
+  const SurfaceTree tree(sheet(70));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(-500, 500), small(-1, 1);
+  // Groups near and far from the surface, close together and scattered.
+  std::vector<Vec3> points;
+  for (int group = 0; group < 40; ++group) {
+    const Vec3 middle{35 + along(random) / (1 + group), along(random) / (1 + 2 * group), 35 + along(random) / (1 + group)};
+    const double wide = std::pow(10.0, group % 5 - 2);
+    for (int i = 0; i < 16; ++i) points.push_back(middle + Vec3{small(random), small(random), small(random)} * wide);
+  }
+  std::vector<SurfaceHit> hits(points.size());
+  for (std::size_t i = 0; i < hits.size(); i += 3) hits[i].triangle = int(random() % 9000);   // anything to begin with
+  tree.closestInTurn(points, hits);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfaceHit alone = tree.closest(points[i]);
+    ASSERT_EQ(hits[i].triangle, alone.triangle) << i;
+    ASSERT_EQ(hits[i].distance, alone.distance) << i;
+  }
 }
 
 TEST(SurfaceTree, IsExactFarFromTheOriginAndFarFromTheMesh) {

@@ -1,4 +1,5 @@
 #include "plugins/comparer/surface/compare.h"
+#include "plugins/comparer/surface/hollow.h"
 
 #include "kernel/stage/error.h"
 #include "kernel/value/scene.h"
@@ -141,6 +142,76 @@ TEST(Compare, HoldsAPredictionAgainstSkinThatCopiesTheBone) {
   EXPECT_NEAR(c.skillAgainstCopy(), 0.75, 0.02);   // 1 mm off against 4 mm off
 }
 
+TEST(Hollow, IsAsDeepAsTheStringOverTheFrontSays) {
+  const Mesh skin = wall(30);
+  const std::vector<double> depths = hollowDepths(skin);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    // In the slice through z the string hangs on the slice's own ends, 100 mm beside the middle.
+    const Vec3 p = skin.points[i];
+    const double ends = 30 * std::exp(-(100 * 100 + p.z * p.z) / (2 * 900));
+    // Slices are 2 mm apart, rows 5 mm: between slices the string misses half of what a row bends by, 5 mm times the second derivative of
+    // its ends, which is 30 exp(-100^2 / 1800) / 900 = 1.3e-4 / mm at the most.
+    EXPECT_NEAR(depths[i], std::max(0.0, p.y - ends), 4e-4) << p.x << ' ' << p.z;
+  }
+}
+
+TEST(Hollow, IsNothingOnARoundBodyAndOnItsBack) {
+  // A cylinder with a groove of 10 mm down its front and one down its back.
+  std::vector<Vec3> points;
+  constexpr int kRows = 11, kColumns = 181;
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kColumns; ++c) {
+      const double angle = 2 * M_PI * c / (kColumns - 1), x = -100 * std::cos(angle), y = -100 * std::sin(angle);
+      const double groove = 10 * std::exp(-x * x / 200);
+      points.push_back({x, y + (y < 0 ? groove : -groove), 10.0 * r});
+    }
+  const Mesh body = layerMesh(kRows, kColumns, points);
+  const std::vector<double> depths = hollowDepths(body);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const Vec3 p = body.points[i];
+    if (p.y > 0 || std::abs(p.x) > 45) {
+      EXPECT_LT(depths[i], 1e-6) << p.x << ' ' << p.y;
+    }
+    if (p.y < 0 && std::abs(p.x) < 1e-9) {
+      EXPECT_NEAR(depths[i], 10 - 2.6, 1);   // the string cuts the circle between the groove's shoulders
+    }
+  }
+}
+
+TEST(Compare, MeasuresEveryPredictionOverTheSameHollow) {
+  const Mesh before = wall(30), copied = wall(0);
+  const auto scan = std::make_shared<Mesh>(wall(4));
+  std::vector<ComparedRegion> hollows;
+  std::vector<std::size_t> pits;
+  for (double predicted : {5.0, 15.0, 26.0}) {
+    const Comparison c = compareSurfaces(scan, {wall(predicted), &before, &copied}, {}, kNoPoll);
+    ASSERT_EQ(c.regions.at(0).name, "hollow");
+    hollows.push_back(c.regions[0]);
+    pits.push_back(c.pit.count);
+    EXPECT_NEAR(c.regions[0].skill(), 1 - c.regions[0].distances.rms / c.regions[0].unchanged.rms, 1e-12);
+    EXPECT_NEAR(c.regions[0].skillAgainstCopy(), 1 - c.regions[0].distances.rms / c.regions[0].copied.rms, 1e-12);
+    EXPECT_GT(c.regions[0].reverse.count, 0u);
+  }
+  EXPECT_GT(pits[0], pits[2]);   // a timid prediction shrinks its own pit
+  for (const ComparedRegion& h : hollows) {
+    EXPECT_EQ(h.distances.count, hollows[0].distances.count);
+    EXPECT_EQ(h.unchanged.rms, hollows[0].unchanged.rms);
+    EXPECT_EQ(h.copied.rms, hollows[0].copied.rms);
+  }
+  EXPECT_GT(hollows[0].skill(), hollows[1].skill());
+  // Deeper than 3 mm within sqrt(2 900 ln(30 / 3)) = 64.4 mm of the middle, and 10 mm around that.
+  const Comparison c = compareSurfaces(scan, {wall(5), &before}, {}, kNoPoll);
+  const PointField& field = dynamic_cast<const Mesh&>(*c.sample).fields.at(3);
+  ASSERT_EQ(field.name, "hollow");
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    const double off = std::hypot(scan->points[i].x, scan->points[i].z);
+    // Between them lies the grid: a triangle belongs to it with one corner, up to 7 mm further.
+    if (off < 65 || off > 85) {
+      EXPECT_EQ(field.values[i], off < 65) << off;
+    }
+  }
+}
+
 TEST(Compare, MeasuresRegionsOfOnesOwn) {
   CompareSettings settings;
   settings.regions = {parseRegion("middle = ball 0 0 0 20"), parseRegion("right=box -100 -50 -9 9 -99 99")};
@@ -153,7 +224,7 @@ TEST(Compare, MeasuresRegionsOfOnesOwn) {
 }
 
 TEST(Compare, RefusesRegionsThatAreNone) {
-  for (const char* text : {"", "a", "a = ", "a = ball 1 2 3", "a = ball 1 2 3 -4", "a = box 0 1 0 1 1 0", "a = cone 1 2 3 4", "a b = ball 1 2 3 4", "pit = ball 1 2 3 4", "a = ball 1 2 3 4 x",
+  for (const char* text : {"", "a", "a = ", "a = ball 1 2 3", "a = ball 1 2 3 -4", "a = box 0 1 0 1 1 0", "a = cone 1 2 3 4", "a b = ball 1 2 3 4", "pit = ball 1 2 3 4", "hollow = ball 1 2 3 4", "a = ball 1 2 3 4 x",
                            "A-B = ball 1 2 3 4"})
     EXPECT_THROW(parseRegion(text), Error) << text;
 }

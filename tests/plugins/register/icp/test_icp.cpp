@@ -1,4 +1,5 @@
 // Alignment of chest-like surfaces whose pose is known.
+#include "plugins/common/surface/point_normals.h"
 #include "plugins/register/icp/icp.h"
 #include "tests/bench/surfaces/chest_fields.h"
 

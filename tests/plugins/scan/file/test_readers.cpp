@@ -211,3 +211,20 @@ TEST(Units, AreTakenAsGivenOrPlausibleOrAskedFor) {
   EXPECT_EQ(millimetresPerUnit("mm", metres), 1);
   EXPECT_THROW(millimetresPerUnit("", metres), Error);
 }
+
+TEST(Units, AreSuggestedWhereTheyMakeATorso) {
+  const auto said = [](double extent) -> std::string {
+    const std::vector<Vec3> points{{0, 0, 0}, {0, 0, extent}};
+    try {
+      millimetresPerUnit("", points);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(said(0.5).find("500 mm with \"m\""), std::string::npos) << said(0.5);
+  EXPECT_EQ(said(0.5).find("inch\""), std::string::npos) << said(0.5);
+  EXPECT_NE(said(20).find("200 mm with \"cm\", 508 mm with \"inch\""), std::string::npos) << said(20);
+  EXPECT_NE(said(1e-6).find("No unit"), std::string::npos) << said(1e-6);
+  EXPECT_NE(said(1e6).find("No unit"), std::string::npos) << said(1e6);
+}

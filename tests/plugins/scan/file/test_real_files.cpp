@@ -56,6 +56,23 @@ TEST(RealFiles, EveryMeshLoadsOrIsRefusedWithASentence) {
   EXPECT_EQ(refused, std::vector<std::string>{"empty.stl"});  // a solid without facets
 }
 
+TEST(RealFiles, AThoraxHasTheSizeThatAnotherReaderFound) {
+  const std::string path = std::string(PECTORA_DATA) + "/surface/iphone_thorax/thorax_surface_mm.ply";
+  if (!fs::exists(path)) GTEST_SKIP() << "PECTORA_DATA is absent: " << path;
+  const RawSurface s = readFile(path);
+  EXPECT_EQ(s.points.size(), 4548u);
+  EXPECT_EQ(s.triangles.size(), 9092u);
+  double volume = 0, area = 0;
+  for (const auto& t : s.triangles) {
+    const Vec3 a = s.points[t[0]], b = s.points[t[1]], c = s.points[t[2]];
+    volume += dot(a, cross(b, c)) / 6;
+    area += norm(cross(b - a, c - a)) / 2;
+  }
+  // ORACLE.json beside the file, to the figures of a float.
+  EXPECT_NEAR(volume, 8295042.847, 1);
+  EXPECT_NEAR(area, 315729.812, 0.05);
+}
+
 TEST(RealFiles, TheUnitCubeHasVolumeOne) {
   const std::string path = std::string(PECTORA_DATA) + "/mesh/unit_cube.STL";
   if (!fs::exists(path)) GTEST_SKIP() << "PECTORA_DATA is absent: " << path;
