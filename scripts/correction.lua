@@ -11,6 +11,8 @@ local p = parameters{
   { name = "model", default = "two_layer", choices = { "two_layer", "volume_mesh" }, doc = "The wall as two layers of points joined by springs, or as a solid of fat, muscle and bone" },
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
+  { name = "contact", default = true, doc = "Ribs, cartilages and sternum are in the pleura's way; without it solvers for springs alone can be taken" },
+  { name = "effects", default = 0, unit = "mm", range = { 0, 100 }, doc = "Of all installed effects run those that change the skin by about so much or more, which rough solves tell; 0: those of this script" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
   { name = "accuracy", default = 0, unit = "mm", range = { 0, 10 }, doc = "Choose model, spacing and solver for the least time in which the computed skin comes about so near (RMS in the pit) to a far finer computation; 0: as given" },
   { name = "edge", default = "subpixel", choices = { "subpixel", "paper" }, doc = "Where the skin lies: the steepest grey value, or the paper's first pixel" },
@@ -34,14 +36,13 @@ end
 -- Model: the wall as springs or as a solid, and the effects that this scene calls for.
 local skin = { compression = p.skin_compression }
 local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.attachment{} }   -- within the skin; pleura to rib cage
+if p.contact then effects[#effects + 1] = effect.rib_contact{} end
+local isLattice = choice.model == "two_layer"
+for _, e in ipairs(isLattice and { effect.direct{}, effect.cross{} } or { effect.tissue{} }) do effects[#effects + 1] = e end   -- between skin and pleura
+if p.effects > 0 then effects[#effects + 1] = "auto" end
+local wall = { spacing = choice.spacing, effects = effects, accuracy = p.effects }
 local scene
-if choice.model == "two_layer" then
-  effects[5], effects[6] = effect.direct{}, effect.cross{}   -- springs between skin and pleura
-  scene = model.two_layer(cage, { spacing = choice.spacing, effects = effects })
-else
-  effects[5] = effect.tissue{}
-  scene = model.volume_mesh(cage, ct, { spacing = choice.spacing, effects = effects })
-end
+if isLattice then scene = model.two_layer(cage, wall) else scene = model.volume_mesh(cage, ct, wall) end
 
 -- Operation: the bar lifts the sternum, the solver finds the skin.
 local plan = planner.nuss(cage, { lift = p.lift })

@@ -29,7 +29,9 @@ print(row:format("solver", "max, mm", "RMS, mm", "s", "iterations", "forces", "r
 for _, s in ipairs{ { "newton" }, { "multigrid" }, { "lbfgs" }, { "projective" }, { "implicit" }, { "implicit", "bdf2" }, { "semi_implicit" }, { "verlet" }, { "xpbd" } } do
   local name, scheme = s[1], s[2]
   if not p.only or p.only == name then
-    local motion = solver[name](scene, plan, { tolerance = p.tolerance, scheme = scheme, accept_unconverged = true })
+    -- Position-based steps come so near only by becoming ever shorter.
+    local tolerance = name == "xpbd" and math.max(p.tolerance, 1e-3) or p.tolerance
+    local motion = solver[name](scene, plan, { tolerance = tolerance, scheme = scheme, accept_unconverged = true })
     local c = comparer.surface(motion.after, reference.after, { name = "swap" })
     local max, rms = math.max(c.overlap_max, -c.overlap_min), c.overlap_rms
     print(row:format(scheme and name .. ", " .. scheme or name, ("%.2e"):format(max), ("%.2e"):format(rms), ("%.3f"):format(motion.seconds),

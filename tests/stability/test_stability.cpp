@@ -21,7 +21,7 @@ void expectNoneBroken(const std::string& arguments) {
 }
 
 class Stability : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Solver, Stability, testing::Values("verlet", "semi_implicit", "implicit", "newton", "lbfgs", "projective", "multigrid"),
+INSTANTIATE_TEST_SUITE_P(Solver, Stability, testing::Values("verlet", "semi_implicit", "implicit", "newton", "lbfgs", "projective", "multigrid", "xpbd"),
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace

@@ -137,7 +137,7 @@ const std::vector<Entry>& table() {
        }},
       {"thick_wall", Must::settle, "the wall is eight times as thick as the points are apart", 10,
        [](Draft& d) { const int n = d.wall.scene->rows; remake(d, n, n, kSpacing, 8 * kSpacing, 10); }},
-      {"tiny", Must::settle, "the whole wall is a micrometre wide", 0,
+      {"tiny", Must::tell, "the whole wall is a micrometre wide, so that skin of its usual thickness is 1e8 times stiffer than it", 0,
        [](Draft& d) { const int n = d.wall.scene->rows; remake(d, n, n, 1e-4, 2.5e-4, 1e-4); }},
       {"huge", Must::settle, "the whole wall is kilometres wide, as light as makes it no slower", 0,
        [](Draft& d) {
@@ -155,6 +155,24 @@ const std::vector<Entry>& table() {
          Scene& s = *d.wall.scene;
          for (int r = 0; r < 2; ++r) for (int c = 0; c < 2; ++c) s.outer[s.index(r, c)] = s.inner[s.index(r, c)];
          d.wall.callEffect("effect.volume");
+       }},
+      {"heavy", Must::tell, "the wall weighs a hundred times its weight, across what the CT shows", 0,
+       [](Draft& d) { d.wall.callEffect("effect.gravity", {{"acceleration", 100.0}, {"posture", std::string("upright")}}); for (auto* masses : {&d.wall.scene->outerMass, &d.wall.scene->innerMass}) for (double& m : *masses) m *= 10; }},
+      {"stiffening", Must::tell, "skin that becomes a million times stiffer within a strain of 14 %", 15,
+       [](Draft& d) { d.hard.isSpringsAlone = false; d.wall.callEffect("effect.j_curve", {{"exponent", 100.0}, {"most", 1e6}}); }},
+      {"behind_the_ribs", Must::tell, "the start has the pleura on the wrong side of the bodies that it must not pass", 10,
+       [](Draft& d) {
+         d.hard.isSpringsAlone = false;
+         d.wall.callEffect("effect.rib_contact", {{"stiffness", 1e4}});
+         Motion& start = d.wall.startAtRest();
+         for (Vec3& p : start.inner) p.y += 30;
+       }},
+      {"all_effects", Must::tell, "every effect at once on a lift of 40 mm", 40,
+       [](Draft& d) {
+         d.hard.isSpringsAlone = false;
+         for (const char* effect : {"effect.volume", "effect.gravity", "effect.j_curve", "effect.rib_contact", "effect.bar_contact", "effect.cartilage_bending",
+                                    "effect.bar_compliance", "effect.respiration"})
+           d.wall.callEffect(effect);
        }},
   };
   return entries;

@@ -85,7 +85,7 @@ double longest(const SingleVectors& v, std::size_t count) {
 
 double negligibleForce(const System& system) {
   const std::vector<double> bound = system.stiffnessBound();
-  return bound.empty() ? 0 : 1e-9 * *std::max_element(bound.begin(), bound.end());
+  return bound.empty() ? 0 : 1e-9 * *std::min_element(bound.begin(), bound.begin() + std::ptrdiff_t(system.freeNodes));
 }
 
 Residual largestResidual(const System& system, const NodeVectors& gradient) {

@@ -27,8 +27,8 @@ struct Residual {
 };
 Residual largestResidual(const System& system, const NodeVectors& gradient);
 
-/// A force, N, that moves nothing by more than about 1e-9 mm. Beneath it a system is at rest even where no spring bears a
-/// force to compare with, as after the bar went back to where it was.
+/// A force, N, that moves not even the softest point by more than about 1e-9 mm. Beneath it a system is at rest even where no
+/// spring bears a force to compare with, as after the bar went back to where it was.
 double negligibleForce(const System& system);
 
 }  // namespace pectora
