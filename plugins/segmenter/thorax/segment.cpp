@@ -98,6 +98,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
   // Into patient coordinates.
   part(0.9, 1, "measuring")(0);
   auto anatomy = std::make_shared<Anatomy>();
+  const double turn = patientTurn(ribs);
   const auto patient = [&](Vec3 p) { return toPatient(grid, p); };
   const auto lift = [&](const std::vector<Point2>& line, double z) {
     std::vector<Vec3> points;
@@ -109,7 +110,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
     for (const Vec3& p : rib.body.line) r.centerline.push_back(patient(p));
     anatomy->ribs.push_back(std::move(r));
   }
-  anatomy->sternum = measureSternum(sternum, grid.spacing.z);
+  anatomy->sternum = measureSternum(sternum, grid.spacing.z, turn);
   Sternum& bone = anatomy->sternum;
   if (!sternum.empty()) {
     for (Vec3& p : bone.axis) p = patient(p);
@@ -146,7 +147,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
 
     const auto here = std::find_if(sternum.begin(), sternum.end(), [&](const SternumSlice& x) { return x.slice == k; });
     if (here == sternum.end()) continue;
-    LevelMetrics metrics = measureLevel(level, here->contour, front, wallOf(polar, wall, k, s, 120));
+    LevelMetrics metrics = measureLevel(level, here->contour, front, wallOf(polar, wall, k, s, 120), turn);
     if (metrics.transverse > 0 && metrics.sternumToVertebra > 0 && metrics.deepestInnerWall > 0)
       anatomy->metrics.push_back(metrics);
   }

@@ -20,9 +20,10 @@ struct Settings {
 std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> ct, const Settings& settings, Host& host);
 
 /// T, B and C of one level from the sternum's contour there (may be empty), the front of the vertebral body and the inner
-/// wall, all local mm: T is the inner width; B and C are depths along y, from the front of the vertebral body to the most
-/// posterior point of the sternum and to the most anterior point of the inner wall. Zero where it is not known.
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall);
+/// wall, all local mm, in the axes of a patient who is turned about z by `turnDeg`: T is the inner width; B and C are depths
+/// from the front of the vertebral body to the most posterior point of the sternum and to the most anterior point of the inner
+/// wall. Zero where it is not known.
+LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall, double turnDeg);
 
 /// Bone contours of one slice told apart by what was found there before, by position, size and Hu's first moment:
 /// "rib" (with side and number) around a rib's centreline, "sternum", "vertebra" within 45 mm of the column's middle,

@@ -75,7 +75,7 @@ TEST(MeasureLevel, GivesHallersLengthsOfAnEllipseWithASternum) {
   std::vector<Point2> wall;
   for (int d = -120; d <= 120; ++d) wall.push_back({120 * std::sin(d * 0.0174533), -80 * std::cos(d * 0.0174533)});
   const Loop sternum = {{-20, -30}, {20, -30}, {20, -20}, {-20, -20}};
-  const LevelMetrics m = measureLevel(5, sternum, {3, 60, 5}, wall);
+  const LevelMetrics m = measureLevel(5, sternum, {3, 60, 5}, wall, 0);
   EXPECT_NEAR(m.transverse, 240, 0.05);
   EXPECT_NEAR(m.sternumToVertebra, 80, 1e-9);
   EXPECT_NEAR(m.deepestInnerWall, 140, 1e-9);
@@ -84,7 +84,7 @@ TEST(MeasureLevel, GivesHallersLengthsOfAnEllipseWithASternum) {
 }
 
 TEST(MeasureLevel, LeavesUnknownLengthsZero) {
-  const LevelMetrics m = measureLevel(0, {}, {0, 0, 0}, {});
+  const LevelMetrics m = measureLevel(0, {}, {0, 0, 0}, {}, 0);
   EXPECT_EQ(m.transverse, 0);
   EXPECT_EQ(m.sternumToVertebra, 0);
   EXPECT_EQ(m.deepestInnerWall, 0);
@@ -112,7 +112,7 @@ std::vector<SternumSlice> sternum(double turn) {
 }
 
 TEST(MeasureSternum, FindsJointsTiltAndTorsion) {
-  const Sternum s = measureSternum(sternum(12), 1);
+  const Sternum s = measureSternum(sternum(12), 1, 0);
   EXPECT_NEAR(s.jugularNotch.z, 200, 1e-9);
   EXPECT_NEAR(s.manubriosternalJoint.z, 155, 3);
   EXPECT_NEAR(s.xiphisternalJoint.z, 76, 1);
@@ -123,6 +123,39 @@ TEST(MeasureSternum, FindsJointsTiltAndTorsion) {
   for (std::size_t n = 2; n < s.notches.size(); ++n) EXPECT_LT(s.notches[n].position.z, s.notches[n - 2].position.z);
 }
 
-TEST(MeasureSternum, OfNothingIsEmpty) { EXPECT_TRUE(measureSternum({}, 1).axis.empty()); }
+TEST(SectionTorsion, IsTheSlopeAlsoOfASquareThatHasNoLongAxis) {
+  // As deep as wide, as an axial slice cuts a steep sternum; every column is shifted by 0.3 of its x.
+  Loop square;
+  for (const auto& [x, y] : {std::pair{-15.0, -15.0}, {15.0, -15.0}, {15.0, 15.0}, {-15.0, 15.0}}) square.push_back({x, y + 0.3 * x});
+  EXPECT_NEAR(sectionTorsion(square), std::atan(0.3) * 180 / M_PI, 1e-6);
+}
+
+TEST(MeasureSternum, TakesThePatientsTurnFromTheTorsion) {
+  EXPECT_NEAR(measureSternum(sternum(12), 1, 5).torsionDeg, measureSternum(sternum(12), 1, 0).torsionDeg - 5, 1e-9);
+}
+
+TEST(MeasureLevel, IsInTheAxesOfATurnedPatient) {
+  // A wall of 100 x 60 mm and a sternum 50 mm before the vertebra, all turned by 20 degrees about it.
+  const double a = 20 * M_PI / 180;
+  const auto turned = [&](double x, double y) { return Point2{std::cos(a) * x - std::sin(a) * y, std::sin(a) * x + std::cos(a) * y}; };
+  const std::vector<Point2> wall{turned(-100, 0), turned(-60, -60), turned(60, -60), turned(100, 0)};
+  const LevelMetrics m = measureLevel(0, {turned(-10, -55), turned(10, -55), turned(10, -50), turned(-10, -50)}, {0, 0, 0}, wall, 20);
+  EXPECT_NEAR(m.transverse, 200, 1e-9);
+  EXPECT_NEAR(m.sternumToVertebra, 50, 1e-9);
+  EXPECT_NEAR(m.deepestInnerWall, 60, 1e-9);
+}
+
+TEST(LungBehindRibs, IsTheGapWhereBothAreKnownAndSpreadsAround) {
+  // Lung on every ray of 40 slices, 8 mm behind the ribs in the lower half and right at them in the upper half.
+  std::vector<std::vector<double>> lung(40, std::vector<double>(PolarGrid::kAngles, 100));
+  std::vector<WallSample> ribs;
+  for (int s = 0; s < 40; s += 4)
+    for (int n = 0; n < PolarGrid::kAngles; n += 5) ribs.push_back({double(n), double(s), s < 20 ? 108.0 : 100.0, 1});
+  const auto behind = lungBehindRibs(ribs, lung, 0, 5);
+  EXPECT_NEAR(behind[2 * PolarGrid::kAngles + 80], 8, 0.3);
+  EXPECT_NEAR(behind[37 * PolarGrid::kAngles + 80], 0, 0.3);
+}
+
+TEST(MeasureSternum, OfNothingIsEmpty) { EXPECT_TRUE(measureSternum({}, 1, 0).axis.empty()); }
 
 }  // namespace
