@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace pectora::thorax {
 namespace {
@@ -13,27 +12,6 @@ constexpr double kNeckMm = 30;       // nearer to the column a rib is part of th
 constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35 for an ellipse of 4 : 1
 
 }  // namespace
-
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall, double turnDeg) {
-  LevelMetrics level;
-  level.z = z;
-  // Turned back about the front of the vertebra: x to the patient's left, y to his back.
-  const double c = std::cos(turnDeg * std::numbers::pi / 180), s = std::sin(turnDeg * std::numbers::pi / 180);
-  const auto turned = [&](Point2 p) {
-    const double x = p.x - vertebralFront.x, y = p.y - vertebralFront.y;
-    return Point2{c * x + s * y, c * y - s * x};
-  };
-  double least = 1e300, greatest = -1e300, front = 1e300, back = -1e300;
-  for (const Point2& point : innerWall) {
-    const Point2 p = turned(point);
-    least = std::min(least, p.x), greatest = std::max(greatest, p.x), front = std::min(front, p.y);
-  }
-  for (const Point2& point : sternum) back = std::max(back, turned(point).y);
-  if (!innerWall.empty()) level.transverse = greatest - least;
-  if (!innerWall.empty() && front < 0) level.deepestInnerWall = -front;
-  if (!sternum.empty() && back < 0) level.sternumToVertebra = -back;
-  return level;
-}
 
 std::vector<SliceContour> classifyBones(const Field& field, int slice, double boneHu, const std::vector<FoundRib>& ribs,
                                         const std::vector<SternumSlice>& sternum, const Spine& spine) {

@@ -40,9 +40,4 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
 /// than two slices.
 Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpacing, double turnDeg);
 
-/// Angle of a contour's midline (midway between front and back in 24 columns over the middle 0.8 of its width) by linear
-/// regression, degrees; positive: the left side lies deeper. Unlike the principal axis it also holds for a steep sternum,
-/// which an axial slice cuts to nearly a square.
-double sectionTorsion(const Loop& contour);
-
 }  // namespace pectora::thorax

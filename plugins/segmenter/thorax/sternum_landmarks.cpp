@@ -1,5 +1,7 @@
 #include "plugins/segmenter/thorax/sternum.h"
 
+#include "kernel/value/levels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -81,22 +83,6 @@ double bentResidual(const std::vector<double>& values, std::size_t a, std::size_
 
 }  // namespace
 
-double sectionTorsion(const Loop& contour) {
-  constexpr int kColumns = 24;
-  const Sides sides = sidesOf(contour);
-  const double middle = 0.5 * (sides.right + sides.left), half = 0.4 * (sides.left - sides.right);
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (int c = 0; c < kColumns; ++c) {
-    const double at = half * (2 * (c + 0.5) / kColumns - 1);
-    const Column column = columnAt(contour, middle + at);
-    if (column.front > column.back) continue;
-    const double depth = 0.5 * (column.front + column.back);
-    n += 1, x += at, y += depth, xx += at * at, xy += at * depth;
-  }
-  const double square = n * xx - x * x;
-  return square > 0 ? std::atan((n * xy - x * y) / square) * 180 / std::numbers::pi : 0;
-}
-
 Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpacing, double turnDeg) {
   Sternum sternum;
   if (slices.size() < 2) return sternum;
@@ -153,7 +139,7 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t k = std::max(joint, deepest > reach ? deepest - reach : 0); k <= std::min(xiphoid, deepest + reach); ++k) {
     if (!slices[k].isSeen) continue;
-    const double from = double(k) - double(deepest), angle = sectionTorsion(slices[k].contour) - turnDeg;
+    const double from = double(k) - double(deepest), angle = sectionTorsion(sternum.contours[k]) - turnDeg;
     n += 1, x += from, y += angle, xx += from * from, xy += from * angle;
   }
   // The regression line's value at the deepest level.
@@ -166,7 +152,7 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
     const double place = rib == 1 ? 0.37 * double(joint) : double(joint) + kBodyPart[rib - 1] * double(xiphoid - joint);
     const std::size_t n = std::min(count - 1, std::size_t(std::lround(place)));
     const Sides sides = sidesOf(slices[n].contour);
-    const double slope = std::tan(sectionTorsion(slices[n].contour) / kDegrees);
+    const double slope = std::tan(sectionTorsion(sternum.contours[n]) / kDegrees);
     for (Side side : {Side::right, Side::left}) {
       const double x = side == Side::right ? sides.right : sides.left;
       sternum.notches.push_back({side, rib, {x, slices[n].shape.centroid.y + slope * (x - slices[n].shape.centroid.x), sternum.axis[n].z}});

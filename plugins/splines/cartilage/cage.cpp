@@ -103,7 +103,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
       const Vec3 end = notch ? notch->position : upper->at(kGuessedJoin);
       const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : upper->derivative(kGuessedJoin));
       guesses.push_back(alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura));
-      courses.push_back({side, number, upper ? number - 1 : 0, false, guesses.back().sample(kSamples), 0});
+      courses.push_back({side, number, upper ? number - 1 : 0, notch && notch->isGiven, guesses.back().sample(kSamples), 0});
     }
   }
 
@@ -114,6 +114,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
     const Course& c = courses[n];
     const bool isSeen = ct && c.likeness > kLeastLikeness;
     if (ct && !isSeen) note(guessed, c.side, c.rib);
+    if (isSeen && c.isEndGiven) courses[n].line.back() = guesses[n].at(1);
     Cartilage cartilage{c.side, c.rib, isSeen ? fitCurve(resamplePolyline(c.line, kSamples), kControls) : guesses[n], c.joins, 0};
     if (c.joins > 0) {
       const Cartilage* upper = findCartilage(cage, c.side, c.joins);
