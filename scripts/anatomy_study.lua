@@ -2,7 +2,7 @@
 local p = parameters{
   { name = "matrix", default = 512, range = { 128, 512 }, doc = "Pixels along each side of a slice" },
   { name = "edge", default = "subpixel", choices = { "subpixel", "paper" }, doc = "Where the skin lies: the steepest grey value, or the paper's first pixel" },
-  { name = "only", default = "", doc = "Name of the one phantom to judge; empty: all" },
+  { name = "only", doc = "Name of the one phantom to judge; default: all" },
   { name = "out", default = "anatomy_study", role = "output", doc = "Folder for anatomy_study.csv and anatomy_study.png" },
 }
 -- Head, figure, format, and what is to be reached in slices of up to 2.5 mm (negative: at least; 0: no goal).
@@ -23,7 +23,7 @@ print("Against each phantom's truth: ribs 1-10 rightly numbered of 20; mm but fo
 print(head)
 local lines = { csv }
 for _, variant in ipairs(require "anatomy_variants") do
-  if p.only == "" or p.only == variant.name then
+  if not p.only or p.only == variant.name then
     local settings = { matrix = p.matrix }
     for name, value in pairs(variant) do
       if name ~= "name" then settings[name] = value end
@@ -40,7 +40,7 @@ for _, variant in ipairs(require "anatomy_variants") do
     lines[#lines + 1] = line
   end
 end
-if #lines == 1 then error("there is no phantom of that name: " .. p.only) end
+if #lines == 1 then error("there is no phantom of that name: " .. tostring(p.only)) end
 report.table{ path = p.out .. "/anatomy_study.csv", lines = lines }
 report.scorecard{ path = p.out .. "/anatomy_study.png", lines = lines, goals = goals, title = "Anatomy against the truth of the phantoms" }
 print("The table is in " .. p.out .. "/anatomy_study.csv and .png")
