@@ -52,17 +52,16 @@ local motion = solver[choice.solver](scene, plan, { tolerance = choice.tolerance
 local comparisons = {
   comparer.surface(motion.before, motion.after, { name = "ct_vs_simulated", unchanged = motion.before }),
 }
-local registrations = {}
+local registrations, aligned = {}, nil
 if p.scan then
   local scanned = scan.file{ path = p.scan, units = p.scan_units }
-  local aligned
   aligned, registrations[1] = register.landmarks(scanned, scan.landmarks{ path = p.landmarks, set = "scan" },
                                                  scan.landmarks{ path = p.landmarks, set = "ct" }, { method = p.registration })
   if p.icp then aligned, registrations[2] = register.icp(aligned, motion.before, motion.after) end
   comparisons[2] = comparer.surface(aligned, motion.after, { name = "scan_vs_simulated", unchanged = motion.before, copied = motion.copied })
 end
 report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion,
-              registration = registrations, comparisons = comparisons, slices = p.slices, path = p.out }
+              registration = registrations, comparisons = comparisons, scan = aligned, slices = p.slices, path = p.out }
 
 -- The table of the paper: signed distances in mm. The pit is where the prediction moves the skin; the hollow is where the skin before lies
 -- behind a string over its front, whatever is predicted: models are to be compared there.

@@ -1,5 +1,6 @@
 // The figures that each value shows to scripts and summaries.
 #include "kernel/value/anatomy.h"
+#include "kernel/value/levels.h"
 #include "kernel/value/mesh.h"
 #include "kernel/value/rib_cage.h"
 #include "kernel/value/truth.h"
@@ -63,6 +64,11 @@ std::vector<Fact> Anatomy::facts() const {
   facts.push_back({"haller_index", level ? level->haller() : none, ""});
   facts.push_back({"correction_index", level ? level->correctionIndex() : none, "%"});
   facts.push_back({"deepest_level_z", level ? level->z : none, "mm"});
+  if (level)
+    for (Fact& fact : levelFacts(*level)) facts.push_back(std::move(fact));
+  facts.push_back({"concavity_volume", metrics.empty() ? none : concavityVolume(metrics), "mL"});
+  facts.push_back({"turn", turnDeg, "deg"});
+  facts.push_back({"ranges_of_doubt", double(ranges.size()), ""});
   return facts;
 }
 

@@ -54,6 +54,17 @@ TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
   fs::remove_all(out);
 }
 
+TEST(AnatomyStudy, WritesTableAndPicture) {
+  const fs::path out = fs::temp_directory_path() / "pectora_test_anatomy_study";
+  fs::remove_all(out);
+  const Ended study = run("scripts/anatomy_study.lua", "matrix=192 only=cup_4 out=" + out.string());
+  EXPECT_EQ(study.code, 0) << study.text;
+  EXPECT_EQ(count(study.text, "cup_4 "), 1u) << study.text;
+  for (const char* file : {"anatomy_study.csv", "anatomy_study.png"}) EXPECT_TRUE(fs::exists(out / file)) << file;
+  EXPECT_NE(run("scripts/anatomy_study.lua", "only=nobody out=" + out.string()).code, 0);
+  fs::remove_all(out);
+}
+
 TEST(Accuracy, PromisedIsKeptOnPhantomsThatWereNotStudied) {
   const Ended promise = run("tests/scripts/accuracy_promise.lua", "");
   EXPECT_EQ(promise.code, 0) << promise.text;

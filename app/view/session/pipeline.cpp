@@ -333,7 +333,7 @@ void Pipeline::exportTo(const std::string& folder) {
   const auto one = [](const Handle& h) { return h.value ? std::vector<Handle>{h} : std::vector<Handle>{}; };
   std::vector<Handle> registrations = one(r.byLandmarks);
   if (r.byIcp.value) registrations.push_back(r.byIcp);
-  Runner::PortInputs inputs{one(r.ct), one(r.anatomy), one(r.cage), one(r.scene), one(r.plan), one(r.motion), registrations, one(r.comparison)};
+  Runner::PortInputs inputs{one(r.ct), one(r.anatomy), one(r.cage), one(r.scene), one(r.plan), one(r.motion), registrations, one(r.comparison), one(r.aligned)};
   runner_.run("report.files", {{"path", folder}}, inputs);
 }
 

@@ -84,7 +84,7 @@ std::string scriptOf(const Choices& c) {
     text += fmt::format("local aligned, by_landmarks = register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
     if (c.usesIcp) text += "local by_icp\naligned, by_icp = register.icp(aligned, motion.before, motion.after)\n";
     text += "local comparison = comparer.surface(aligned, motion.after, { name = \"scan_vs_simulated\", unchanged = motion.before })\n\n";
-    lists = fmt::format(",\n              registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}", c.usesIcp ? ", by_icp" : "");
+    lists = fmt::format(",\n              registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}, scan = aligned", c.usesIcp ? ", by_icp" : "");
   }
   text += "report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion" + lists + ", path = \"result\" }\n";
   text += "print(plan)\nprint(motion)\n";

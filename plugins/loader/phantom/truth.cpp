@@ -46,9 +46,9 @@ Sternum makeSternum(const Body& body, const Grid& grid) {
   sternum.manubriosternalJoint = body.place(plan.at(0));
   sternum.xiphisternalJoint = body.place(plan.at(plan.bodyLength));
 
-  // Deepest point of the front surface of the body.
+  // Deepest point of the front surface of the body's caudal half.
   double deepest = -1e9, where = 0, column = 0;
-  for (double s = 4; s <= plan.bodyLength; s += 1) {
+  for (double s = plan.bodyLength / 2; s <= plan.bodyLength; s += 1) {
     const Vec3 middle = plan.at(s);
     const Level level = body.level(middle.z);
     const double half = plan.halfWidth(s) - 3;

@@ -1,5 +1,7 @@
 #include "plugins/report/files/cage_picture.h"
 
+#include "plugins/report/files/solid_view.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,73 +10,79 @@
 namespace pectora {
 namespace {
 
-constexpr int kWidth = 1180, kHeight = 680;
-constexpr Color kBone{0.80, 0.66, 0.36}, kCartilage{0.30, 0.52, 0.80}, kSternum{0.72, 0.30, 0.26}, kAfter{0.20, 0.62, 0.35}, kBar{0.25, 0.25, 0.30};
+constexpr int kWidth = 1240, kHeight = 720, kTop = 56, kBottom = 44, kFrontWidth = 680;
+constexpr Color kBone{0.93, 0.87, 0.72}, kCartilage{0.52, 0.72, 0.93}, kSternum{0.90, 0.55, 0.48}, kBar{0.45, 0.47, 0.52}, kBefore{0.15, 0.45, 0.25};
+constexpr double kRibHigh = 6, kRibThin = 3.5, kCartilageHigh = 6, kCartilageThin = 4.5;   // half axes of what is drawn, mm
 
-// One of the two views: right and up axes on the picture.
-struct View {
-  double left, scale;
-  Vec3 center;
-  bool fromSide;
+void drawView(Canvas& canvas, SolidView view, Seen from, const RibCage& cage, const Plan* plan, Vec3 middle) {
+  // Solids: bone as it is, what the operation moves where it comes to lie.
+  for (const RibCurve& rib : cage.ribs) view.draw(tubeMesh(rib.curve.sample(90), kRibHigh, kRibThin, middle), kBone);
+  for (std::size_t n = 0; n < cage.cartilages.size(); ++n)
+    view.draw(tubeMesh((plan ? plan->frames.back()[n].curve : cage.cartilages[n].curve).sample(40), kCartilageHigh, kCartilageThin, middle), kCartilage);
+  std::vector<std::vector<Vec3>> outlines = cage.anatomy->sternum.contours;
+  if (plan)
+    for (auto& outline : outlines)
+      for (Vec3& p : outline) p = plan->motion(p);
+  view.draw(stackMesh(outlines), kSternum);
+  if (plan) view.draw(tubeMesh(plan->bar.centerline, plan->bar.width / 2, std::max(2.0, plan->bar.height / 2), middle), kBar);
+  view.paint(canvas);
 
-  std::array<double, 2> operator()(Vec3 p) const {
-    const double across = fromSide ? p.y - center.y : p.x - center.x;
-    return {left + across * scale, kHeight / 2.0 + 20 - (p.z - center.z) * scale};
-  }
-  std::vector<std::array<double, 2>> line(const std::vector<Vec3>& points) const {
+  // Where that was before, as lines; the ribs' numbers.
+  const auto line = [&](const std::vector<Vec3>& points) {
     std::vector<std::array<double, 2>> projected;
-    for (const Vec3& p : points) projected.push_back((*this)(p));
+    for (const Vec3& p : points) projected.push_back(view.at(p));
     return projected;
+  };
+  if (plan) {
+    for (const Cartilage& c : cage.cartilages) canvas.polyline(line(c.curve.sample(30)), false, kBefore, 1.2);
+    canvas.polyline(line(cage.anatomy->sternum.axis), false, kBefore, 1.6);
   }
-};
-
-void drawCage(Canvas& canvas, const View& view, const RibCage& cage, const Plan* plan) {
-  // Far things first: the ribs by their depth.
-  std::vector<const RibCurve*> ribs;
-  for (const RibCurve& rib : cage.ribs) ribs.push_back(&rib);
-  if (view.fromSide)
-    std::stable_sort(ribs.begin(), ribs.end(), [](const RibCurve* a, const RibCurve* b) { return a->side == Side::right && b->side == Side::left; });
-  for (const RibCurve* rib : ribs) {
-    const auto line = view.line(rib->curve.sample(80));
-    canvas.polyline(line, false, kWhite, 8);
-    canvas.polyline(line, false, kBone, 5);
-    if (!view.fromSide || rib->side == Side::left) {
-      const auto& at = line[line.size() * 6 / 10];
-      canvas.text(at[0], at[1] - 5, fmt::format("{}{}", rib->side == Side::right ? "R" : "L", rib->number), 12, kInk, 0.5);
-    }
+  for (const RibCurve& rib : cage.ribs) {
+    if (rib.number == 0 || (from == Seen::fromLeft && rib.side == Side::right)) continue;
+    // Where the rib is farthest to its side, or in the middle of its visible course.
+    const std::vector<Vec3> points = rib.curve.sample(60);
+    const auto place = from == Seen::fromLeft ? points.begin() + 34
+                                              : std::max_element(points.begin(), points.end(), [](Vec3 a, Vec3 b) { return std::abs(a.x) < std::abs(b.x); });
+    const auto at = view.at(*place);
+    const double aside = from == Seen::fromLeft ? 0 : rib.side == Side::right ? -16 : 16;
+    canvas.text(at[0] + aside, at[1] + 4, fmt::format("{}", rib.number), 12, kInk, 0.5);
   }
-  for (const auto& contour : cage.anatomy->sternum.contours) canvas.polyline(view.line(contour), true, kSternum, 1);
-  for (const Cartilage& c : cage.cartilages) canvas.polyline(view.line(c.curve.sample(30)), false, kCartilage, 3.5);
-  if (!plan) return;
-  for (const MovedCartilage& c : plan->frames.back()) canvas.polyline(view.line(c.curve.sample(30)), false, kAfter, 2);
-  for (const auto& contour : cage.anatomy->sternum.contours) {
-    std::vector<Vec3> moved;
-    for (const Vec3& p : contour) moved.push_back(plan->motion(p));
-    canvas.polyline(view.line(moved), true, kAfter, 1);
-  }
-  canvas.polyline(view.line(plan->bar.centerline), false, kBar, 4);
 }
 
 }  // namespace
 
 Canvas cagePicture(const RibCage& cage, const Plan* plan) {
   Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-  for (const RibCurve& rib : cage.ribs)
-    for (const Vec3& p : rib.curve.sample(40))
+  const auto hold = [&](const std::vector<Vec3>& points) {
+    for (const Vec3& p : points)
       for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  };
+  for (const RibCurve& rib : cage.ribs) hold(rib.curve.sample(40));
+  for (const Cartilage& c : cage.cartilages) hold(c.curve.sample(20));
+  for (const auto& outline : cage.anatomy->sternum.contours) hold(outline);
   Canvas canvas(kWidth, kHeight, kWhite);
   if (cage.ribs.empty()) return canvas;
-  const double scale = std::min({(kHeight - 150) / std::max(1.0, high.z - low.z), 560 / std::max(1.0, high.x - low.x), 460 / std::max(1.0, high.y - low.y)});
+  const int tall = kHeight - kTop - kBottom;
+  const double scale = std::min({(tall - 30) / std::max(1.0, high.z - low.z), (kFrontWidth - 70) / std::max(1.0, high.x - low.x),
+                                 (kWidth - kFrontWidth - 40) / std::max(1.0, high.y - low.y)});
   const Vec3 center = (low + high) / 2;
-  drawCage(canvas, {310, scale, center, false}, cage, plan);
-  drawCage(canvas, {880, scale, center, true}, cage, plan);
-  canvas.text(310, 40, "From the front (patient's right on the left)", 16, kInk, 0.5);
-  canvas.text(880, 40, "From the patient's left (front on the left)", 16, kInk, 0.5);
-  double at = 60;
-  for (const auto& [name, color] : {std::pair<const char*, Color>{"ribs", kBone}, {"cartilages", kCartilage}, {"sternum", kSternum}, {"after the operation", kAfter}, {"bar", kBar}}) {
-    canvas.rectangle(at, kHeight - 34, 14, 14, color);
-    canvas.text(at + 20, kHeight - 22, name, 13, kInk);
-    at += 150;
+  drawView(canvas, {Seen::fromFront, 0, kTop, kFrontWidth, tall, center, scale}, Seen::fromFront, cage, plan, center);
+  drawView(canvas, {Seen::fromLeft, kFrontWidth, kTop, kWidth - kFrontWidth, tall, center, scale}, Seen::fromLeft, cage, plan, center);
+  canvas.text(kFrontWidth / 2.0, 34, "From the front (patient's right on the left)", 16, kInk, 0.5);
+  canvas.text((kFrontWidth + kWidth) / 2.0, 34, "From the patient's left (front on the left)", 16, kInk, 0.5);
+
+  struct Entry {
+    const char* name;
+    Color color;
+    bool isShown;
+  };
+  double at = 40;
+  for (const Entry& entry : {Entry{"ribs", kBone, true}, {"costal cartilages", kCartilage, true}, {"sternum", kSternum, true}, {"bar", kBar, plan != nullptr},
+                             {"before the operation (cartilages, sternal axis)", kBefore, plan != nullptr}}) {
+    if (!entry.isShown) continue;
+    canvas.rectangle(at, kHeight - 32, 14, 14, entry.color);
+    canvas.text(at + 20, kHeight - 20, entry.name, 13, kInk);
+    at += 60 + 7.2 * double(std::string(entry.name).size());
   }
   return canvas;
 }

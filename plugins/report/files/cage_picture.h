@@ -7,7 +7,8 @@
 
 namespace pectora {
 
-/// Ribs (numbered), cartilages, sternum and, with a plan, the moved cartilages and sternum and the bar.
+/// Ribs (numbered), cartilages and sternum as solids; with a plan cartilages and sternum as they come to lie, with the bar, and as
+/// lines where they were.
 Canvas cagePicture(const RibCage& cage, const Plan* plan);
 
 }  // namespace pectora

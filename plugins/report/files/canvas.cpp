@@ -29,6 +29,13 @@ void Canvas::pixel(int x, int y, Color c) {
   cairo_surface_mark_dirty(surface_.get());
 }
 
+Color Canvas::colorAt(int x, int y) const {
+  cairo_surface_flush(surface_.get());
+  const auto* row = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface_.get()) +
+                                                           std::size_t(y) * cairo_image_surface_get_stride(surface_.get()));
+  return {(row[x] >> 16 & 255) / 255.0, (row[x] >> 8 & 255) / 255.0, (row[x] & 255) / 255.0};
+}
+
 void Canvas::greyImage(const std::vector<unsigned char>& grey, int columns, int rows, double x, double y, double w, double h) {
   cairo_surface_t* image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, columns, rows);
   for (int r = 0; r < rows; ++r) {

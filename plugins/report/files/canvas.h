@@ -23,6 +23,7 @@ class Canvas {
   int width() const { return width_; }
   int height() const { return height_; }
   void pixel(int x, int y, Color color);
+  Color colorAt(int x, int y) const;   ///< of a pixel within the picture
   /// Grey values 0 to 255, row by row, scaled to a rectangle of the picture.
   void greyImage(const std::vector<unsigned char>& grey, int columns, int rows, double x, double y, double w, double h);
   void polyline(const std::vector<std::array<double, 2>>& points, bool closed, Color color, double lineWidth);

@@ -11,6 +11,7 @@ namespace {
 constexpr double kWindowLevel = 40, kWindowWidth = 400;
 constexpr double kPixelsPerMm = 2.2;
 constexpr int kLegend = 46;
+constexpr double kRingMm = 5;   // about a cartilage's line
 
 struct Structure {
   const char* name;
@@ -28,7 +29,7 @@ Color colorOf(const std::string& structure) {
 
 }  // namespace
 
-Canvas slicePicture(const Volume& ct, const Anatomy& anatomy, int slice) {
+Canvas slicePicture(const Volume& ct, const Anatomy& anatomy, const RibCage* cage, int slice) {
   const Grid& grid = ct.grid;
   const double scaleX = grid.spacing.x * kPixelsPerMm, scaleY = grid.spacing.y * kPixelsPerMm;
   const int width = int(std::lround(grid.size[0] * scaleX)), height = int(std::lround(grid.size[1] * scaleY));
@@ -61,11 +62,25 @@ Canvas slicePicture(const Volume& ct, const Anatomy& anatomy, int slice) {
       canvas.text(x / n + 9, y / n - 9, fmt::format("{}{}", contour.side == Side::right ? "R" : "L", contour.number), 13, colorOf(contour.structure));
     }
   }
+  // Cartilages where their line crosses the slice.
+  for (std::size_t n = 0; cage && n < cage->cartilages.size(); ++n) {
+    const Cartilage& cartilage = cage->cartilages[n];
+    const std::vector<Vec3> line = cartilage.curve.sample(80);
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const double a = grid.toVoxel(line[i - 1]).z - slice, b = grid.toVoxel(line[i]).z - slice;
+      if ((a < 0) == (b < 0)) continue;
+      const auto middle = toPixel(lerp(line[i - 1], line[i], a / (a - b)));
+      std::vector<std::array<double, 2>> ring;
+      for (int d = 0; d < 24; ++d) ring.push_back({middle[0] + kRingMm * kPixelsPerMm * std::cos(d * M_PI / 12), middle[1] + kRingMm * kPixelsPerMm * std::sin(d * M_PI / 12)});
+      canvas.polyline(ring, true, colorOf("cartilage"), 1.4);
+      canvas.text(middle[0], middle[1] - kRingMm * kPixelsPerMm - 3, fmt::format("{}{}", cartilage.side == Side::right ? "R" : "L", cartilage.rib), 12, colorOf("cartilage"), 0.5);
+    }
+  }
   double at = 12;
   for (const Structure& s : kStructures) {
     canvas.rectangle(at, height + 16, 14, 14, s.color);
     canvas.text(at + 20, height + 28, s.name, 14, kWhite);
-    at += 112;
+    at += 106;
   }
   canvas.text(width - 12, 24, fmt::format("slice {}  z = {:.1f} mm", slice, grid.toPatient({0, 0, double(slice)}).z), 15, kWhite, 1);
   canvas.text(12, 24, "R", 16, kWhite);

@@ -1,4 +1,5 @@
 #include "plugins/report/files/cage_picture.h"
+#include "plugins/report/files/metrics_table.h"
 #include "plugins/report/files/slice_picture.h"
 #include "plugins/report/files/surface_picture.h"
 
@@ -8,6 +9,8 @@
 
 #include "kernel/stage/plugin.h"
 #include "kernel/value/comparison.h"
+#include "kernel/value/indices.h"
+#include "kernel/value/levels.h"
 #include "kernel/value/motion.h"
 
 #include <fmt/format.h>
@@ -36,11 +39,12 @@ class Files final : public Stage {
 
     // Everything that was handed in, once, for facts and provenance.
     std::vector<Handle> all;
-    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion", "registration", "comparisons"})
+    for (const char* port : {"ct", "anatomy", "cage", "scene", "plan", "motion", "registration", "comparisons", "scan"})
       all.insert(all.end(), inputs.handles(port).begin(), inputs.handles(port).end());
     writePictures(inputs, host);
     writeMeshes(inputs);
     writeComparisons(inputs);
+    writeMetrics(inputs);
     writeSummary(inputs, all);
     return {report};
   }
@@ -55,6 +59,8 @@ class Files final : public Stage {
   void writePictures(const Inputs& inputs, Host& host) {
     const auto ct = inputs.get<Volume>("ct");
     const auto anatomy = inputs.get<Anatomy>("anatomy");
+    const auto plan = inputs.get<Plan>("plan");
+    const auto cage = plan ? plan->cage : inputs.get<RibCage>("cage");
     if (ct && anatomy && slices_ > 0) {
       makeFolder(path_ + "/slices");
       // Pictures of an earlier run with other slices would pass for this one's.
@@ -65,11 +71,9 @@ class Files final : public Stage {
         host.checkCancel();
         host.progress(double(i) / count, "drawing slices");
         const int slice = count > 1 ? int(std::int64_t(i) * (total - 1) / (count - 1)) : total / 2;
-        slicePicture(*ct, *anatomy, slice).write(file(fmt::format("slices/slice_{:04}.png", slice)));
+        slicePicture(*ct, *anatomy, cage.get(), slice).write(file(fmt::format("slices/slice_{:04}.png", slice)));
       }
     }
-    const auto plan = inputs.get<Plan>("plan");
-    const auto cage = plan ? plan->cage : inputs.get<RibCage>("cage");
     if (cage) cagePicture(*cage, plan.get()).write(file("rib_cage.png"));
   }
 
@@ -135,6 +139,34 @@ class Files final : public Stage {
     return fmt::format("{}: {} points, mean {:+.2f}, SD {:.2f}, RMS {:.2f}, min {:+.2f}, max {:+.2f} mm (signed)", region, s.count, s.mean, s.sd, s.rms, s.min, s.max);
   }
 
+  // A row for every level: before, predicted, and on the scan what shows on the skin.
+  void writeMetrics(const Inputs& inputs) {
+    const auto anatomy = inputs.get<Anatomy>("anatomy");
+    if (!anatomy || anatomy->metrics.empty()) return;
+    states_ = {{"before", anatomy->metrics}};
+    const auto plan = inputs.get<Plan>("plan");
+    const auto motion = inputs.get<Motion>("motion");
+    std::vector<LevelMetrics> planned = plan ? plannedLevels(*anatomy, plan->motion) : std::vector<LevelMetrics>();
+    if (motion) {
+      std::shared_ptr<const Value> after;
+      for (auto& [name, part] : motion->parts())
+        if (name == "after") after = part;
+      const auto& skin = dynamic_cast<const Mesh&>(*after);
+      planned = withSkin(std::move(planned), *anatomy, [&](double z, Vec3 vertebra, double half) { return frontAt(skin, z, vertebra, half); });
+    }
+    if (!planned.empty()) states_.emplace_back("predicted", std::move(planned));
+    if (inputs.has("scan")) {
+      std::vector<LevelMetrics> outside;
+      for (const LevelMetrics& level : anatomy->metrics) outside.emplace_back().z = level.z;
+      const auto mesh = inputs.get<Mesh>("scan");
+      const auto points = inputs.get<Points>("scan");
+      states_.emplace_back("scan", withSkin(std::move(outside), *anatomy, [&](double z, Vec3 vertebra, double half) {
+                             return mesh ? frontAt(*mesh, z, vertebra, half) : frontAt(*points, z, vertebra, half);
+                           }));
+    }
+    writeFile(file("metrics.csv"), metricsCsv(states_));
+  }
+
   void writeSummary(const Inputs& inputs, const std::vector<Handle>& all) {
     const std::string path = file("summary.json");
     Json json;
@@ -153,6 +185,12 @@ class Files final : public Stage {
     for (const Handle& handle : inputs.handles("comparisons"))
       comparisons[dynamic_cast<const Comparison&>(*handle.value).name] = factsJson(*handle.value);
     json["comparisons"] = std::move(comparisons);
+    if (const auto anatomy = inputs.get<Anatomy>("anatomy")) {
+      if (const LevelMetrics* level = anatomy->deepestLevel()) json["metrics"] = metricsJson(states_, level->z);
+      json["doubts"] = Json::array();
+      for (const SliceRange& range : anatomy->ranges)
+        json["doubts"].push_back({{"what", range.what}, {"z_low_mm", range.low}, {"z_high_mm", range.high}, {"meaning", range.meaning}});
+    }
     json["files"] = report_->files;
     json["provenance"] = provenanceJson(all);
     json["timing"] = timingJson(all);
@@ -163,6 +201,7 @@ class Files final : public Stage {
   int slices_ = 20;
   double colorLimit_ = 0;
   Report* report_ = nullptr;
+  MetricStates states_;
 };
 
 }  // namespace
@@ -172,6 +211,7 @@ PECTORA_STAGE(Files, {.id = "report.files", .version = "1.0",
                       .inputs = {{"ct", {"Volume"}, true}, {"anatomy", {"Anatomy"}, true}, {"cage", {"RibCage"}, true},
                                  {"scene", {"Scene"}, true}, {"plan", {"Plan"}, true}, {"motion", {"Motion"}, true},
                                  {.name = "registration", .kinds = {"Registration"}, .isList = true},
-                                 {.name = "comparisons", .kinds = {"Comparison"}, .isList = true}},
+                                 {.name = "comparisons", .kinds = {"Comparison"}, .isList = true},
+                                 {"scan", {"Mesh", "Points"}, true}},
                       .outputs = {{"report", {"Report"}}},
                       .isCacheable = false})

@@ -1,31 +1,18 @@
 #include "plugins/report/plot/plot.h"
 
-#include "plugins/report/common/atomic_file.h"
+#include "plugins/report/common/gnuplot.h"
 
 #include "kernel/stage/error.h"
 
 #include <fmt/format.h>
 
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-
-extern char** environ;
 
 namespace pectora {
 namespace {
 
 bool isDrawable(const WorkPoint& p) { return std::isfinite(p.cost) && std::isfinite(p.error) && p.cost > 0 && p.error > 0; }
-
-// A text in single quotes, in which gnuplot reads nothing but a doubled quote.
-std::string inQuotes(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c == '\n' ? ' ' : c);
-  return result + "'";
-}
 
 std::string dataBlock(const std::string& name, const std::vector<WorkPoint>& points) {
   std::string text = "$" + name + " << EOD\n";
@@ -82,20 +69,6 @@ std::string gnuplotCommands(const WorkPrecision& picture, const std::string& png
   if (picture.floor > 0)
     text += fmt::format(", \\\n  {:.9g} with lines linecolor '#b00000' dashtype 2 title {}", picture.floor, inQuotes(picture.floorLabel));
   return text + "\n";
-}
-
-void runGnuplot(const std::string& commands, const std::string& commandPath) {
-  writeFile(commandPath, commands);
-  std::string program = "gnuplot", file = commandPath;
-  char* arguments[] = {program.data(), file.data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  const int failure = posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments, environ);
-  if (failure == 0) waitpid(child, &status, 0);
-  std::error_code ignored;
-  std::filesystem::remove(commandPath, ignored);
-  if (failure != 0) throw Error("gnuplot, which draws this picture, is not installed", ErrorKind::runFailed).advise("Install it: apt install gnuplot-nox");
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error("gnuplot could not draw the picture", ErrorKind::runFailed);
 }
 
 }  // namespace pectora

@@ -27,7 +27,4 @@ std::vector<WorkPoint> paretoFront(std::vector<WorkPoint> points);
 /// logarithm has no place for them.
 std::string gnuplotCommands(const WorkPrecision& picture, const std::string& pngPath);
 
-/// Runs gnuplot on these commands. Throws Error if it is not installed or fails.
-void runGnuplot(const std::string& commands, const std::string& commandPath);
-
 }  // namespace pectora

@@ -1,6 +1,7 @@
 #include "plugins/report/plot/plot.h"
 
 #include "plugins/report/common/atomic_file.h"
+#include "plugins/report/common/gnuplot.h"
 
 #include "kernel/stage/plugin.h"
 #include "kernel/value/comparison.h"

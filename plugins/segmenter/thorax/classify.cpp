@@ -8,22 +8,11 @@ namespace {
 
 constexpr double kLeastAreaMm2 = 8;
 constexpr double kVertebraMm = 45;   // from the column's middle
+constexpr double kAcrossMm = 6;      // on both sides of the column
 constexpr double kNeckMm = 30;       // nearer to the column a rib is part of the vertebra's contour
 constexpr double kBladeHu1 = 0.35;   // Hu's first moment: 0.16 for a disc, 0.35 for an ellipse of 4 : 1
 
 }  // namespace
-
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall) {
-  LevelMetrics level;
-  level.z = z;
-  double least = 1e300, greatest = -1e300, front = 1e300, back = -1e300;
-  for (const Point2& p : innerWall) least = std::min(least, p.x), greatest = std::max(greatest, p.x), front = std::min(front, p.y);
-  for (const Point2& p : sternum) back = std::max(back, p.y);
-  if (!innerWall.empty()) level.transverse = greatest - least;
-  if (!innerWall.empty() && front < vertebralFront.y) level.deepestInnerWall = vertebralFront.y - front;
-  if (!sternum.empty() && back < vertebralFront.y) level.sternumToVertebra = vertebralFront.y - back;
-  return level;
-}
 
 std::vector<SliceContour> classifyBones(const Field& field, int slice, double boneHu, const std::vector<FoundRib>& ribs,
                                         const std::vector<SternumSlice>& sternum, const Spine& spine) {
@@ -49,7 +38,10 @@ std::vector<SliceContour> classifyBones(const Field& field, int slice, double bo
 
     const double fromColumn = std::hypot(c.x - spine.centre[slice].x, c.y - spine.centre[slice].y);
     if (breastbone && isInside(breastbone->contour, c)) contour.structure = "sternum";
-    if (contour.structure.empty() && isInside(loop, {spine.centre[slice].x, spine.centre[slice].y}))
+    // Around the middle of the column, or across it behind: at a disc the arch may be one with the ribs of both sides.
+    const auto [right, left] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
+    const bool isAcross = right->x < spine.centre[slice].x - kAcrossMm && left->x > spine.centre[slice].x + kAcrossMm && fromColumn < kVertebraMm;
+    if (contour.structure.empty() && (isAcross || isInside(loop, {spine.centre[slice].x, spine.centre[slice].y})))
       contour.structure = "vertebra";
     for (std::size_t r = 0; r < ribs.size() && contour.structure.empty(); ++r)
       for (const Vec3& p : ribs[r].body.line)

@@ -109,6 +109,21 @@ float Field::at(Vec3 p) const {
   return mix(bottom, top, t[2]);
 }
 
+void Field::shift(Vec3 corner, Vec3 opposite, double hu) {
+  constexpr int kFaintHu = 80, kBrightHu = 400;
+  std::array<int, 3> low{}, high{};
+  for (int a = 0; a < 3; ++a) {
+    low[a] = std::max(box_.low[a], int(std::ceil(std::min(corner[a], opposite[a]) / spacing_[a])));
+    high[a] = std::min(box_.high[a] - 1, int(std::floor(std::max(corner[a], opposite[a]) / spacing_[a])));
+  }
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i) {
+        std::int16_t& v = hu_[(std::size_t(k - box_.low[2]) * box_.size(1) + (j - box_.low[1])) * box_.size(0) + (i - box_.low[0])];
+        if (v > kFaintHu && v < kBrightHu) v = std::int16_t(std::clamp<long>(std::lround(v + hu), -1024, 3071));
+      }
+}
+
 bool Field::contains(Vec3 p, double marginMm) const {
   for (int a = 0; a < 3; ++a)
     if (p[a] < box_.low[a] * spacing_[a] + marginMm || p[a] > (box_.high[a] - 1) * spacing_[a] - marginMm) return false;

@@ -44,6 +44,9 @@ class Field {
   }
   const Box& box() const { return box_; }
   Vec3 spacing() const { return spacing_; }
+  /// Adds `hu` to what is between half and twice as bright as bone (80 to 400 HU) between two corners, so that one level outlines
+  /// bone that is fainter or brighter there. Local mm.
+  void shift(Vec3 corner, Vec3 opposite, double hu);
   /// Whether a position lies within the box of voxel centres, with `marginMm` to spare.
   bool contains(Vec3 localMm, double marginMm = 0) const;
 

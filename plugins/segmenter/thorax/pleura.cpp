@@ -83,8 +83,7 @@ std::vector<double> lungRadii(const Field& field, const Body& body, const PolarG
   return radius;
 }
 
-std::vector<WallSample> bonyWall(const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,
-                                 const Field& field, const PolarGrid& grid, double boneHu, double offsetMm) {
+std::vector<WallSample> ribWall(const std::vector<FoundRib>& ribs, const Field& field, const PolarGrid& grid, double boneHu, double offsetMm) {
   std::vector<WallSample> samples;
   const double sliceSpacing = field.spacing().z;
   for (const FoundRib& rib : ribs)
@@ -112,12 +111,50 @@ std::vector<WallSample> bonyWall(const std::vector<FoundRib>& ribs, const std::v
         before = value;
       }
     }
+  return samples;
+}
+
+std::vector<WallSample> sternumWall(const std::vector<SternumSlice>& sternum, const PolarGrid& grid, double offsetMm) {
+  std::vector<WallSample> samples;
   for (const SternumSlice& s : sternum) {
     const std::vector<double> near = outlineRadii(s.contour, grid, s.slice);
     for (int n = 0; n < PolarGrid::kAngles; ++n)
       if (near[n] > 0) samples.push_back({double(n), double(s.slice), near[n] - offsetMm, 1});
   }
   return samples;
+}
+
+std::vector<double> lungBehindRibs(const std::vector<WallSample>& ribs, const std::vector<std::vector<double>>& lung, int firstSlice,
+                                   double sliceSpacing) {
+  constexpr int angles = PolarGrid::kAngles;
+  constexpr double kArcMm = 110 * PolarGrid::kStepDeg * kRadians;   // between rays at a usual radius
+  const int slices = int(lung.size());
+  // Where both are known: the gap, and that it is known.
+  std::vector<float> gap(std::size_t(slices) * angles, 0), known(gap.size(), 0);
+  for (const WallSample& sample : ribs) {
+    const int s = int(std::lround(sample.slice)) - firstSlice, n = int(std::lround(sample.angleIndex));
+    if (s < 0 || s >= slices || n < 0 || n >= angles || lung[s][n] <= 0) continue;
+    gap[std::size_t(s) * angles + n] += float(sample.radius - lung[s][n]);
+    known[std::size_t(s) * angles + n] += 1;
+  }
+  const auto blurred = [&](const std::vector<float>& from, double sigmaMm) {
+    Plane plane(angles, slices);
+    plane.value = from;
+    // Nothing lies beyond the border: a frame of zeros as wide as the Gaussian would be repeated outwards.
+    const int frame = int(std::ceil(3 * sigmaMm / std::min(kArcMm, sliceSpacing)));
+    Plane framed(angles + 2 * frame, slices + 2 * frame);
+    for (int s = 0; s < slices; ++s) std::copy_n(&from[std::size_t(s) * angles], angles, &framed.at(frame, s + frame));
+    smooth(framed, sigmaMm / kArcMm, sigmaMm / sliceSpacing);
+    for (int s = 0; s < slices; ++s) std::copy_n(&framed.at(frame, s + frame), angles, &plane.at(0, s));
+    return plane.value;
+  };
+  std::vector<double> behind(gap.size(), 0);
+  for (double sigma : {60.0, 20.0}) {
+    const std::vector<float> sum = blurred(gap, sigma), weight = blurred(known, sigma);
+    for (std::size_t i = 0; i < behind.size(); ++i)
+      if (weight[i] > 1e-4f) behind[i] = double(sum[i]) / double(weight[i]);
+  }
+  return behind;
 }
 
 std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,
@@ -133,7 +170,10 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
   });
   if (step) step(0.3);
 
-  std::vector<WallSample> bony = bonyWall(ribs, sternum, field, grid, boneHu, settings.offsetMm);
+  std::vector<WallSample> bony = ribWall(ribs, field, grid, boneHu, settings.offsetMm);
+  const std::vector<double> behind = lungBehindRibs(bony, lung, firstSlice, body.spacing.z);
+  const std::vector<WallSample> sternal = sternumWall(sternum, grid, settings.offsetMm);
+  bony.insert(bony.end(), sternal.begin(), sternal.end());
   std::erase_if(bony, [&](const WallSample& b) { return b.slice < firstSlice - 0.5 || b.slice > firstSlice + slices - 0.5; });
   std::vector<WallSample> all;
   for (int s = 0; s < slices; ++s)
@@ -156,7 +196,7 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
     for (const WallSample& sample : all) {
       const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
       // Lung behind an effusion lies ever further in: the rounds may not follow it.
-      if (sample.radius < radius[at] - settings.deepestMm || sample.radius < bonySurface[at] - 2 * settings.deepestMm) continue;
+      if (behind[at] > settings.effusionMm || sample.radius < radius[at] - settings.deepestMm || sample.radius < bonySurface[at] - 2 * settings.deepestMm) continue;
       samples.push_back(sample);
       hasLung[at] = 1;
     }

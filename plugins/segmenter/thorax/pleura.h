@@ -35,17 +35,16 @@ std::vector<double> lungRadii(const Field& field, const Body& body, const PolarG
 std::vector<double> outlineRadii(const Loop& outline, const PolarGrid& grid, int slice);
 
 /// Samples of the bony wall: `offsetMm` inside the ribs' inner surfaces (first fall below boneHu on the way to the pole
-/// from the centreline) and inside the sternum's back. The rib's last 45 mm before the spine are left out: they are
-/// behind the wall.
-std::vector<WallSample> bonyWall(const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,
-                                 const Field& field, const PolarGrid& grid, double boneHu, double offsetMm);
+/// from the centreline), without the rib's last 45 mm before the spine, which are behind the wall; and inside the sternum's back.
+std::vector<WallSample> ribWall(const std::vector<FoundRib>& ribs, const Field& field, const PolarGrid& grid, double boneHu, double offsetMm);
+std::vector<WallSample> sternumWall(const std::vector<SternumSlice>& sternum, const PolarGrid& grid, double offsetMm);
 
 /// Where the wall is to be expected when nothing shows it, for every slice and angle ((slice - firstSlice) * kAngles + n).
 struct UsualWall {
   std::vector<double> radius;   ///< mm
   std::vector<double> weight;   ///< of a sample there
 };
-/// As far below the skin as nine tenths of the samples within 6 degrees at least are, but not beyond the radius that 97 %
+/// As far below the skin as nine tenths of the samples within 6 degrees at least are (on the side where that is less), but not beyond the radius that 97 %
 /// of them and of the lung's keep within; at the sides (more than 60 degrees from the front) not beyond their median. The weight is faint (1e-5) within 40 mm of a sample at that
 /// angle and 1e-3 beyond. `skinRadius[s][n]`, negative where unknown.
 UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<WallSample>& lung,
@@ -57,17 +56,24 @@ UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<Wa
 std::vector<double> fitWall(const std::vector<WallSample>& samples, const UsualWall& usual, int firstSlice,
                             int lastSlice, double sliceSpacing, double stiffness);
 
+/// How far the lung stays behind the ribs (mm, positive: further in) around every place of the grid, from the rays on which both
+/// are known: the mean with Gaussian weights of 20 mm around the chest and along it, further away of 60 mm; 0 where nothing is
+/// known. Indices as in findPleura; `lung[s][n]` is negative where there is no lung.
+std::vector<double> lungBehindRibs(const std::vector<WallSample>& ribs, const std::vector<std::vector<double>>& lung, int firstSlice,
+                                   double sliceSpacing);
+
 struct PleuraSettings {
   double lungLevelHu = -430;      ///< half-way between lung and wall
   double offsetMm = 1.5;          ///< pleura inside of bone
   double deepestMm = 6;           ///< lung farther than this inside the bony wall is not the wall (mediastinum, heart, liver)
+  double effusionMm = 2;          ///< where the lung stays further behind the ribs than this, something lies between it and the wall
   double leastThicknessMm = 4;    ///< between skin and pleura
 };
 
 /// The inner wall in slices firstSlice to lastSlice: radius[(slice - firstSlice) * kAngles + n]. A first surface goes
 /// through the bony wall alone (or, if there is none, through all lung); lung within `deepestMm` of it, or outside it,
 /// then joins it with a greater weight, and so four times more from the new surface, but never further inside the first one than
-/// twice that. The last surface is cut back to
+/// twice that, and nowhere that the lung stays behind the ribs (effusion, fat): there the bony wall stands. The last surface is cut back to
 /// `leastThicknessMm` inside the skin.
 std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,
                                const std::vector<FoundRib>& ribs, const std::vector<SternumSlice>& sternum,

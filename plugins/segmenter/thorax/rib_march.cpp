@@ -15,8 +15,13 @@ constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rou
 constexpr double kFarthestOffMm = 2.5;     // of a cut's centre from the rough line
 constexpr double kNeckMm = 24;
 constexpr double kSharpTurn = 0.8;          // cosine of 37 degrees
+constexpr double kBoneBrightness = 0.83;    // of a rib's usual one; calcified cartilage has no cortex
+constexpr double kReferenceFromMm = 15, kReferenceToMm = 75;   // behind the front of the inner part, where that is taken
+constexpr double kSearchBackMm = 44;
 constexpr int kLongestMergeMm = 30;
-constexpr double kHighestSplit = 3;
+constexpr double kHighestSplit = 5;
+constexpr double kLargestAreaMm2 = 300, kMergedArea = 1.3;
+constexpr double kThickSliceMm = 3, kMergedAreaThick = 2.2;   // thick slices blur a section's size
 
 Vec3 spineAt(const Spine& spine, double z, double sliceSpacing) {
   const double k = std::clamp(z / sliceSpacing, 0.0, double(spine.centre.size() - 1));
@@ -58,9 +63,23 @@ Vec3 courseOf(const std::vector<Vec3>& line) {
   return normalized(recent + (recent - before) * 0.5);
 }
 
+/// Mean of the pixels within a contour.
+double meanWithin(const Plane& plane, const Loop& loop) {
+  double lowX = 1e9, lowY = 1e9, highX = -1e9, highY = -1e9, sum = 0;
+  for (Point2 p : loop) lowX = std::min(lowX, p.x), highX = std::max(highX, p.x), lowY = std::min(lowY, p.y), highY = std::max(highY, p.y);
+  int count = 0;
+  for (int j = std::max(0, int(std::ceil(lowY))); j <= std::min<double>(plane.height - 1, highY); ++j)
+    for (int i = std::max(0, int(std::ceil(lowX))); i <= std::min<double>(plane.width - 1, highX); ++i)
+      if (isInside(loop, {double(i), double(j)})) sum += plane.at(i, j), ++count;
+  return count > 0 ? sum / count : 0;
+}
+
+/// How much larger than usual a section must be to hold another bone.
+double mergedArea(const Field& field) { return field.spacing().z > kThickSliceMm ? kMergedAreaThick : kMergedArea; }
+
 }  // namespace
 
-Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
+Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu, double usualAreaMm2) {
   // Two directions across the line, the first as level as possible.
   Vec3 e1 = cross(direction, {0, 0, 1});
   e1 = norm(e1) > 1e-3 ? normalized(e1) : Vec3{1, 0, 0};
@@ -73,6 +92,7 @@ Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
       plane.at(i, j) = field.contains(at) ? field.at(at) : -1024.0f;
     }
   // Where the contour around p is too large, a higher level may part what touches.
+  const double largest = usualAreaMm2 > 0 ? std::min(kLargestAreaMm2, mergedArea(field) * usualAreaMm2) : kLargestAreaMm2;
   Cut cut;
   bool wasMerged = false;
   for (double level = boneHu; level <= kHighestSplit * boneHu; level *= 1.4) {
@@ -82,7 +102,7 @@ Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
       const Shape shape = shapeOf(loop);
       const double area = shape.area * kPixelMm * kPixelMm;
       const bool isAround = isInside(loop, {double(half), double(half)});
-      if (area > 300 || shape.spreadMajor * kPixelMm > 7.5) {
+      if (area > largest || shape.spreadMajor * kPixelMm > 7.5) {
         cut.isMerged = cut.isMerged || isAround;
         continue;
       }
@@ -94,6 +114,7 @@ Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu) {
       cut.isFound = true;
       cut.centre = p + e1 * x + e2 * y;
       cut.areaMm2 = area;
+      cut.meanHu = meanWithin(plane, loop);
     }
     if (cut.isFound || !cut.isMerged) break;
     wasMerged = true;
@@ -113,16 +134,23 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   const auto skipFront = std::ptrdiff_t(std::min(kDistrustedFrontMm, 0.25 * length) / kStepMm);
   line = std::vector<Vec3>(line.begin() + skipBack, line.end() - skipFront);
   const std::vector<Vec3> original = line;
-  double usual = 0;
+  double usual = 0, usualHu = 0;
   for (int round = 0; round < 2; ++round) {
     std::vector<Cut> cuts;
-    std::vector<double> areas;
+    std::vector<double> areas, means;
     for (std::size_t n = 0; n < line.size(); ++n) {
       cuts.push_back(cutAcross(field, line[n], directionAt(line, n), boneHu));
-      if (cuts.back().isFound) areas.push_back(cuts.back().areaMm2);
+      if (cuts.back().isFound) areas.push_back(cuts.back().areaMm2), means.push_back(cuts.back().meanHu);
     }
     if (areas.size() < 5) return rib;
     usual = median(areas);
+    // Brightness is compared with the rib's own, not far behind its end: it fades along the rib.
+    const std::size_t end = means.size() - std::min(means.size() / 4, std::size_t(kReferenceFromMm / kStepMm));
+    const std::size_t begin = means.size() - std::min(means.size(), std::size_t(kReferenceToMm / kStepMm));
+    usualHu = median({means.begin() + std::ptrdiff_t(std::min(begin, end - 1)), means.begin() + std::ptrdiff_t(end)});
+    // What is larger than the rib usually is holds another bone that touches it.
+    for (std::size_t n = 0; n < line.size(); ++n)
+      if (cuts[n].isFound && cuts[n].areaMm2 > mergedArea(field) * usual) cuts[n] = cutAcross(field, line[n], directionAt(line, n), boneHu, usual);
     // Where something else touches the rib, or only half of it was seen, the line goes straight on; beside the transverse
     // process the rough line is the better guess.
     std::vector<Vec3> centred;
@@ -137,6 +165,16 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     smoothLine(line);
   }
 
+  // Not into calcified cartilage: the line ends before three steps of dim bone in its front part.
+  std::size_t dim = 0;
+  for (std::size_t n = line.size() - std::min(line.size(), std::size_t(kSearchBackMm / kStepMm)); n < line.size(); ++n) {
+    const Cut cut = cutAcross(field, line[n], directionAt(line, n), boneHu, usual);
+    dim = cut.isFound && cut.meanHu < kBoneBrightness * usualHu ? dim + 1 : 0;
+    if (dim < 3 || n < 8) continue;
+    line.resize(n - 2);
+    break;
+  }
+
   // Forwards to the end of the bone.
   std::vector<Vec3> front = line;
   int misses = 0, unsure = 0;   // steps without bone; steps since the last good one
@@ -148,8 +186,8 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
       isAtBorder = true;
       break;
     }
-    const Cut cut = cutAcross(field, expected, course, boneHu);
-    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && dot(course, heading) > kSharpTurn &&
+    const Cut cut = cutAcross(field, expected, course, boneHu, usual);
+    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && cut.meanHu > kBoneBrightness * usualHu && dot(course, heading) > kSharpTurn &&
                         distance(cut.centre, expected) < (unsure > 2 ? 1.5 : 2.5);
     if (!isGood && !cut.isMerged && ++misses == 3) break;
     if (!isGood && unsure >= kLongestMergeMm / kStepMm) break;

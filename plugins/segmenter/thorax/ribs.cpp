@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pectora::thorax {
 namespace {
@@ -236,6 +237,26 @@ std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine
     return a.body.line.front().z > b.body.line.front().z;
   });
   return ribs;
+}
+
+double patientTurn(const std::vector<FoundRib>& ribs) {
+  constexpr double kFirstMm = 60, kStepMm = 10;   // from the back on, beyond where the two sides lie close together
+  std::vector<double> angles;
+  int pairs = 0;
+  for (const FoundRib& right : ribs)
+    for (const FoundRib& left : ribs) {
+      if (right.side != Side::right || left.side != Side::left || right.number == 0 || right.number != left.number) continue;
+      if (!right.body.reachesVertebra || !left.body.reachesVertebra) continue;
+      const double length = std::min(polylineLength(right.body.line), polylineLength(left.body.line));
+      const std::vector<Vec3> r = resamplePolyline(right.body.line, int(polylineLength(right.body.line)) + 2);
+      const std::vector<Vec3> l = resamplePolyline(left.body.line, int(polylineLength(left.body.line)) + 2);
+      for (double at = kFirstMm; at < length - kStepMm; at += kStepMm) {
+        const Vec3 across = l[std::size_t(at)] - r[std::size_t(at)];
+        angles.push_back(std::atan2(across.y, across.x) * 180 / std::numbers::pi);
+      }
+      ++pairs;
+    }
+  return pairs >= 3 && !angles.empty() ? medianOf(angles) : 0;
 }
 
 }  // namespace pectora::thorax

@@ -37,4 +37,8 @@ Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top);
 std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine& spine, double boneHu,
                                std::vector<std::string>& warnings, const std::function<void(double)>& step = {});
 
+/// How far the patient is turned about z, degrees: the median angle of the lines from right to left between points of the two
+/// ribs of a number that are equally far along them, against x. 0 if fewer than three ribs were found on both sides.
+double patientTurn(const std::vector<FoundRib>& ribs);
+
 }  // namespace pectora::thorax

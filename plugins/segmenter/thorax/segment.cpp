@@ -2,31 +2,26 @@
 
 #include "kernel/physics/workers.h"
 #include "kernel/stage/error.h"
+#include "kernel/value/levels.h"
+#include "plugins/segmenter/thorax/doubts.h"
 #include "plugins/segmenter/thorax/frame.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pectora::thorax {
 namespace {
 
-/// Runs of neighbouring levels as "z -12 to 40 mm, ...".
-std::string ranges(const std::vector<LayerSlice>& levels) {
-  std::string text;
-  for (std::size_t n = 0; n < levels.size(); ++n) {
-    if (!levels[n].clipped) continue;
-    std::size_t last = n;
-    while (last + 1 < levels.size() && levels[last + 1].clipped) ++last;
-    text += (text.empty() ? "" : ", ") + std::to_string(std::lround(levels[n].z)) + " to " +
-            std::to_string(std::lround(levels[last].z));
-    n = last;
-  }
-  return text;
-}
-
 double medianOf(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
   return v[v.size() / 2];
+}
+
+/// How far a point lies behind another along the axis of a patient who is turned about z.
+double depthBehind(Vec3 p, Vec3 origin, double turnDeg) {
+  const double a = turnDeg * std::numbers::pi / 180;
+  return std::cos(a) * (p.y - origin.y) - std::sin(a) * (p.x - origin.x);
 }
 
 /// The part of the inner wall in front of the coronal plane, from right to left.
@@ -57,9 +52,17 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
         .allowed("at least 30 mm of slices")
         .advise("load the whole series");
 
+  if (grid.spacing.z > kThickestMm)
+    throw Error("the slices are too thick: between them ribs cannot be followed")
+        .given(std::to_string(grid.spacing.z) + " mm apart")
+        .allowed("up to " + std::to_string(int(kThickestMm)) + " mm")
+        .advise("ask for the thin reconstruction of the same scan");
+
   // Body, spine, sternum, ribs.
   const Body body = findBody(*ct, part(0, 0.15, "finding the body"));
-  const Field field(*ct, body.box, settings.smoothingMm, part(0.15, 0.35, "smoothing"));
+  Field field(*ct, body.box, settings.smoothingMm, part(0.15, 0.35, "smoothing"));
+  for (const BoneRegion& region : settings.regions)
+    field.shift(toLocal(grid, region.low), toLocal(grid, region.high), settings.boneHu - region.boneHu);
   part(0.35, 0.4, "following the spine")(0);
   const Spine spine = findSpine(body, field, settings.boneHu);
   part(0.4, 0.45, "following the sternum")(0);
@@ -98,6 +101,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
   // Into patient coordinates.
   part(0.9, 1, "measuring")(0);
   auto anatomy = std::make_shared<Anatomy>();
+  const double turn = anatomy->turnDeg = patientTurn(ribs);
   const auto patient = [&](Vec3 p) { return toPatient(grid, p); };
   const auto lift = [&](const std::vector<Point2>& line, double z) {
     std::vector<Vec3> points;
@@ -109,7 +113,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
     for (const Vec3& p : rib.body.line) r.centerline.push_back(patient(p));
     anatomy->ribs.push_back(std::move(r));
   }
-  anatomy->sternum = measureSternum(sternum, grid.spacing.z);
+  anatomy->sternum = measureSternum(sternum, grid.spacing.z, turn);
   Sternum& bone = anatomy->sternum;
   if (!sternum.empty()) {
     for (Vec3& p : bone.axis) p = patient(p);
@@ -131,6 +135,8 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
     const Vec3 front = spine.front[k];
     if (k >= spine.firstSlice && k <= spine.lastSlice) anatomy->vertebralFront.push_back(patient(front));
     for (SliceContour& contour : bones[s]) {
+      // Couch and what lies on it is no bone.
+      if (skin[s].whole.empty() || !isInside(skin[s].whole, {contour.points.front().x, contour.points.front().y})) continue;
       for (Vec3& p : contour.points) p = patient(p);
       anatomy->contours.push_back(std::move(contour));
     }
@@ -146,13 +152,20 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
 
     const auto here = std::find_if(sternum.begin(), sternum.end(), [&](const SternumSlice& x) { return x.slice == k; });
     if (here == sternum.end()) continue;
-    LevelMetrics metrics = measureLevel(level, here->contour, front, wallOf(polar, wall, k, s, 120));
+    LevelMetrics metrics = measureLevel(level, lift(here->contour, z), patient(front), lift(wallOf(polar, wall, k, s, 120), z), turn);
+    // Outside: the whole outline's width, and its back.
+    const LevelMetrics whole = measureLevel(level, {}, patient(front), lift(skin[s].whole, z), turn);
+    double back = 0;
+    for (const Vec3& p : lift(skin[s].whole, z)) back = std::max(back, depthBehind(p, patient(front), turn));
+    if (!skin[s].clipped) measureSkin(metrics, anatomy->skin.back().points, patient(front), turn, whole.transverse, back);
     if (metrics.transverse > 0 && metrics.sternumToVertebra > 0 && metrics.deepestInnerWall > 0)
       anatomy->metrics.push_back(metrics);
   }
   if (withoutSkin) host.warn(std::to_string(withoutSkin) + " levels have no skin in front of the coronal plane");
-  const std::string clipped = ranges(anatomy->skin);
-  if (!clipped.empty()) host.warn("the skin leaves the field of view at z " + clipped + " mm: not to be trusted there");
+  std::vector<char> isClipped;
+  for (const SkinSlice& slice : skin) isClipped.push_back(slice.clipped);
+  anatomy->ranges = findDoubts(*ct, body, isClipped, [&](int k) { return patient({spine.front[k].x, spine.front[k].y, k * grid.spacing.z}).z; });
+  for (const SliceRange& range : anatomy->ranges) host.warn(sentence(range));
   host.progress(1, "segmented");
   return anatomy;
 }

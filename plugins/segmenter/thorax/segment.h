@@ -7,10 +7,17 @@
 
 namespace pectora::thorax {
 
+/// A box of the chest in which bone has a threshold of its own, LPS mm.
+struct BoneRegion {
+  Vec3 low, high;
+  double boneHu = 160;
+};
+
 struct Settings {
   double boneHu = 160;           ///< iso-value of bone
   double smoothingMm = 1.0;      ///< Gaussian before bone and lung are looked for
   int everySlice = 1;            ///< levels of skin and pleura: every n-th slice
+  std::vector<BoneRegion> regions;
   SkinSettings skin;
   PleuraSettings pleura;
 };
@@ -18,11 +25,6 @@ struct Settings {
 /// Segments a CT (science: Moreira et al., SPIE 2012). Throws Error if the CT is too small, or holds no body or no spine;
 /// what else was not found is left out of the result and reported through host.warn.
 std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> ct, const Settings& settings, Host& host);
-
-/// T, B and C of one level from the sternum's contour there (may be empty), the front of the vertebral body and the inner
-/// wall, all local mm: T is the inner width; B and C are depths along y, from the front of the vertebral body to the most
-/// posterior point of the sternum and to the most anterior point of the inner wall. Zero where it is not known.
-LevelMetrics measureLevel(double z, const Loop& sternum, Vec3 vertebralFront, const std::vector<Point2>& innerWall);
 
 /// Bone contours of one slice told apart by what was found there before, by position, size and Hu's first moment:
 /// "rib" (with side and number) around a rib's centreline, "sternum", "vertebra" within 45 mm of the column's middle,

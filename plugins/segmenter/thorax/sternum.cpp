@@ -5,16 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pectora::thorax {
 namespace {
 
 constexpr double kGridMm = 2.8;
 constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   // windows around the path
+constexpr double kMarginMm = 5, kMostDepthMm = 26;  // around what was found there before
 constexpr double kManubriumPart = 0.33;    // of the run's length
 constexpr double kFarthestAsideMm = 12;    // of an end's centroid from the midline
 constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
 constexpr double kLeastScore = 0.1;
+constexpr int kCentringRounds = 4;
 
 double medianOf(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
@@ -66,10 +69,29 @@ Midline findMidline(const std::vector<Vec3>& path, const std::vector<float>& sco
   return best;
 }
 
+/// The straight line through the middles of the seen contours: median slope over pairs and median offset (Theil and Sen), so
+/// that slices where cartilage or a clavicle was taken in do not draw it aside. The old line where fewer than five were seen.
+Midline midlineOf(const std::vector<SternumSlice>& slices, double sliceSpacing, const Midline& old) {
+  std::vector<Point2> middles;   // x = height, y = middle
+  for (const SternumSlice& s : slices) {
+    if (!s.isSeen) continue;
+    const auto [low, high] = std::minmax_element(s.contour.begin(), s.contour.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
+    middles.push_back({s.slice * sliceSpacing, 0.5 * (low->x + high->x)});
+  }
+  std::vector<double> slopes, offsets;
+  for (std::size_t a = 0; a < middles.size(); ++a)
+    for (std::size_t b = a + 1; b < middles.size(); ++b)
+      if (middles[b].x - middles[a].x > kLeastLengthMm) slopes.push_back((middles[b].y - middles[a].y) / (middles[b].x - middles[a].x));
+  if (middles.size() < 5 || slopes.empty()) return old;
+  const double slope = medianOf(slopes);
+  for (const Point2& m : middles) offsets.push_back(m.y - slope * m.x);
+  return {medianOf(offsets), 0, slope};
+}
+
 /// The contour around a point of the midline: hull of the bone in the window; not seen if no bone lies in the middle.
-SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double halfWidth, double boneHu) {
+SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double halfWidth, double halfDepth, double boneHu) {
   constexpr double kPixel = 0.7;
-  const int hx = int(halfWidth / kPixel), hy = int(kHalfDepthMm / kPixel);
+  const int hx = int(halfWidth / kPixel), hy = int(halfDepth / kPixel);
   Plane plane(2 * hx + 1, 2 * hy + 1);
   for (int j = -hy; j <= hy; ++j)
     for (int i = -hx; i <= hx; ++i)
@@ -136,19 +158,28 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
   std::vector<Vec3> at(count);
   for (int s = 0; s < count; ++s)
     at[s] = body.position((path.cell[s] % nx + 0.5) * px - 0.5, (path.cell[s] / nx + 0.5) * py - 0.5, first + s);
-  const Midline midline = findMidline(at, path.score, spine, first);
+  Midline midline = findMidline(at, path.score, spine, first);
   const int near = std::max(1, int(std::lround(5 / sz)));
   std::vector<SternumSlice> slices(count);
   const auto findContours = [&](int from, int to, double halfWidth) {
     parallelFor(to - from + 1, [&](std::size_t n) {
       const int s = from + int(n);
-      std::vector<double> y;
-      for (int t = std::max(0, s - near); t <= std::min(count - 1, s + near); ++t)
-        if (path.score[t] > kLeastScore && std::abs(at[t].x - midline.at(at[t].z)) < 14) y.push_back(at[t].y);
-      slices[s] = {};
+      const SternumSlice before = std::exchange(slices[s], {});
       slices[s].slice = first + s;
-      if (y.empty()) return;
-      slices[s] = contourAround(field, first + s, {midline.at(at[s].z), medianOf(y), at[s].z}, halfWidth, boneHu);
+      // Where it was seen before, the window goes around it with a margin; else around the path's depth nearby.
+      double depth = 0, halfDepth = kHalfDepthMm;
+      if (before.isSeen) {
+        const auto [front, back] = std::minmax_element(before.contour.begin(), before.contour.end(), [](Point2 a, Point2 b) { return a.y < b.y; });
+        depth = 0.5 * (front->y + back->y);
+        halfDepth = std::min(0.5 * (back->y - front->y) + kMarginMm, kMostDepthMm);
+      } else {
+        std::vector<double> y;
+        for (int t = std::max(0, s - near); t <= std::min(count - 1, s + near); ++t)
+          if (path.score[t] > kLeastScore && std::abs(at[t].x - midline.at(at[t].z)) < 14) y.push_back(at[t].y);
+        if (y.empty()) return;
+        depth = medianOf(y);
+      }
+      slices[s] = contourAround(field, first + s, {midline.at(at[s].z), depth, at[s].z}, halfWidth, halfDepth, boneHu);
     });
   };
   // The longest run of slices with a contour.
@@ -162,10 +193,16 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
     if (from >= 0 && to - from > bestTo - bestFrom) bestFrom = from, bestTo = to;
   }
   if ((bestTo - bestFrom) * sz < kLeastLengthMm) return {};
-  // In its upper third, the manubrium, the window is wider.
-  const int wide = bestTo - int(kManubriumPart * (bestTo - bestFrom));
-  findContours(wide, bestTo, kManubriumHalfMm);
-  std::vector<SternumSlice> run(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
+  // A window beside the bone cuts its edge off, so the midline is brought to the middle of what was found, and the contours
+  // are taken again. In the upper third, the manubrium, the window is wider.
+  std::vector<SternumSlice> run;
+  for (int round = 0; round < kCentringRounds; ++round) {
+    const int wide = bestTo - int(kManubriumPart * (bestTo - bestFrom));
+    findContours(bestFrom, wide - 1, kBodyHalfMm);
+    findContours(wide, bestTo, kManubriumHalfMm);
+    run.assign(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
+    midline = midlineOf(run, sz, midline);
+  }
   // An end that lies aside (a calcified cartilage, a clavicle) is not sternum.
   const auto isEnd = [&](const SternumSlice& slice) {
     return slice.isSeen && std::abs(slice.shape.centroid.x - midline.at(slice.slice * sz)) < kFarthestAsideMm;

@@ -27,15 +27,17 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
 /// The landmarks, from the slices, in local mm.
 /// - Jugular notch and end of the xiphoid: first and last centroid.
 /// - Xiphisternal joint: the lowest slice whose contour has at least 0.55 of the median area of the body's slices.
-/// - Manubriosternal joint: where the axis bends most (25 mm above against 25 mm below, forward convex), between 0.2 and
-///   0.45 of the way from the notch to the xiphisternal joint; at 0.33 if it does not bend by 2 degrees.
-/// - Deepest: the most posterior point of the front surface below that joint, taken at the contour's middle.
-/// - Tilt by linear regression of the body's axis; torsion: mean angle of the contours' long axes in 30 mm around the
-///   deepest point.
-/// - Notches on the contour's lateral edge at fixed parts of the way: rib 1 at 0.37 of the manubrium, rib 2 at the
+/// - Manubriosternal joint: where the bone stops to narrow and its axis bends: the place between 0.2 and 0.5 of the way from the
+///   notch to the xiphisternal joint at which two straight pieces that meet there fit width and depth best, from 0.1 to 0.75 of
+///   the way.
+/// - Deepest: the most posterior point of the front surface in the body's caudal half, in the middle 0.84 of its width.
+/// - Tilt by linear regression of the body's axis; torsion: sectionTorsion at the deepest level, by linear regression over
+///   30 mm around it.
+/// - Notches at the contour's lateral edge, midway between front and back, at fixed parts of the way: rib 1 at 0.37 of the manubrium, rib 2 at the
 ///   joint, ribs 3 to 7 at 0.27, 0.51, 0.71, 0.85 and 0.95 of the body (science basis, table 1).
+/// `turnDeg` is the patient's turn about z (see patientTurn): torsion is against the patient's own transverse axis.
 /// If the sternum's upper or lower end lies outside the CT, what hangs on it is only as good as that. Empty for fewer
 /// than two slices.
-Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpacing);
+Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpacing, double turnDeg);
 
 }  // namespace pectora::thorax

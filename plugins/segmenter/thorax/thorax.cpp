@@ -29,18 +29,25 @@ class Thorax final : public Stage {
            "How far the pleura lies inside the bone, where no lung shows it.");
     v.real("pleura_depth", settings_.pleura.deepestMm, "mm", {1, 40}, {4, 15},
            "Lung that lies farther than this inside the bony wall is not taken for the wall (heart, liver, mediastinum).");
+    v.reals("bone_regions", regions_, "mm, HU", {-2000, 3000},
+            "Boxes in which bone has a threshold of its own, seven numbers each: x, y and z of one corner and of the opposite one (LPS), "
+            "and the threshold. For a bone that one threshold misses, or takes in too much of.");
     v.real("least_thickness", settings_.pleura.leastThicknessMm, "mm", {0.5, 30}, {2, 8},
            "Least distance between skin and pleura.");
   }
 
   Outputs run(const Inputs& inputs, Host& host) override {
     settings_.skin.edge = edge_ == "paper" ? thorax::Edge::paper : thorax::Edge::subpixel;
+    if (regions_.size() % 7 != 0)
+      throw Error("a box needs seven numbers: two corners and a threshold").of("bone_regions").given(std::to_string(regions_.size()) + " numbers");
+    for (auto r = regions_.begin(); r != regions_.end(); r += 7) settings_.regions.push_back({{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, r[6]});
     return {thorax::segment(inputs.get<Volume>("ct"), settings_, host)};
   }
 
  private:
   thorax::Settings settings_;
   std::string edge_ = "subpixel";
+  std::vector<double> regions_;
 };
 
 }  // namespace

@@ -56,7 +56,9 @@ UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<Wa
     for (int n = 0; n < angles; ++n) {
       // In front the wall follows the skin, within what occurs; at the sides there may be arms, and it stays in.
       const bool isFront = std::abs(PolarGrid::degrees(n)) <= 60;
-      const double below = skinRadius[s][n] > 0 ? skinRadius[s][n] - depth[n] : radius[n];
+      // What covers one side alone (a breast, fluid behind the wall) does not make the wall thicker below it.
+      const double thinner = std::min(depth[n], depth[angles - 1 - n]);
+      const double below = skinRadius[s][n] > 0 ? skinRadius[s][n] - thinner : radius[n];
       usual.radius[std::size_t(s) * angles + n] = std::max(1.0, std::min(isFront ? large[n] : radius[n], below));
     }
   const int reach = int(kNearMm / sliceSpacing);

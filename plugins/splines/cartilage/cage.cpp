@@ -12,8 +12,8 @@ namespace pectora {
 namespace {
 
 constexpr int kControls = 8, kSamples = 40;   // of a cartilage
-constexpr double kGuessedJoin = 0.5;             // where a false rib's cartilage joins the one above, if it cannot be seen
-constexpr double kNotchReach = 4, kJoinReach = 5; // mm at which a followed cartilage has arrived
+constexpr double kGuessedJoin = 0.6;             // where a false rib's cartilage joins the one above, if it cannot be seen
+constexpr double kLeastLikeness = 0.25;          // of a followed cartilage: halfway to muscle, with some room for noise
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
@@ -83,51 +83,44 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
     cage.ribs.push_back(std::move(curve));
   }
 
+  // The first guess of every cartilage: from its junction to its notch, or to the cartilage above.
   std::string missing, guessed;
   const auto note = [](std::string& list, Side side, int number) { list += fmt::format("{}{} {}", list.empty() ? "" : ", ", sideName(side), number); };
+  std::vector<Course> courses;
+  std::vector<Curve> guesses;
   for (int number = 1; number <= kLastFalseRib; ++number) {
     for (Side side : {Side::right, Side::left}) {
-      poll();
-      // Where it begins, and where it ends: at the sternum, or on the cartilage above.
       const Rib* rib = anatomy->rib(side, number);
       const Notch* notch = number <= kLastTrueRib ? findNotch(anatomy->sternum, side, number) : nullptr;
-      const Cartilage* above = number > kLastTrueRib ? findCartilage(cage, side, number - 1) : nullptr;
-      if (!rib || !rib->reachesJunction || rib->centerline.size() < 4 || (!notch && !above)) {
+      const auto above = std::find_if(courses.begin(), courses.end(), [&](const Course& c) { return number > kLastTrueRib && c.side == side && c.rib == number - 1; });
+      if (!rib || !rib->reachesJunction || rib->centerline.size() < 4 || (!notch && above == courses.end())) {
         note(missing, side, number);
         continue;
       }
       const auto ribCurve = std::find_if(cage.ribs.begin(), cage.ribs.end(), [&](const RibCurve& r) { return r.side == side && r.number == number; });
       const Vec3 start = ribCurve->curve.at(1), along = normalized(ribCurve->curve.derivative(1));
-      const Vec3 end = notch ? notch->position : above->curve.at(kGuessedJoin);
-      const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : above->curve.derivative(kGuessedJoin));
-      const Curve guess = alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura);
-
-      Cartilage cartilage{side, number, guess, above ? number - 1 : 0, above ? kGuessedJoin : 0};
-      std::optional<std::vector<Vec3>> path;
-      if (ct) {
-        const std::vector<Vec3> upper = above ? above->curve.sample(kSamples) : std::vector<Vec3>();
-        const auto isEnd = [&](Vec3 p) {
-          if (notch) return distance(p, notch->position) < kNotchReach;
-          // They touch before they join: only what lies just past the middle of the upper cartilage counts.
-          for (int i = kSamples / 2; i < kSamples * 6 / 10; ++i)
-            if (distance(p, upper[i]) < kJoinReach) return true;
-          return false;
-        };
-        path = traceCartilage(*ct, start, guess.sample(kSamples), isEnd, settings.trace);
-      }
-      if (path && polylineLength(*path) > 4) {
-        if (notch) {
-          path->push_back(notch->position);
-        } else {
-          cartilage.joinsAt = above->curve.closest(path->back());
-          path->push_back(above->curve.at(cartilage.joinsAt));
-        }
-        cartilage.curve = fitCurve(resamplePolyline(*path, kSamples), kControls);
-      } else if (ct) {
-        note(guessed, side, number);
-      }
-      cage.cartilages.push_back(std::move(cartilage));
+      const Curve* upper = notch ? nullptr : &guesses[std::size_t(above - courses.begin())];
+      const Vec3 end = notch ? notch->position : upper->at(kGuessedJoin);
+      const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : upper->derivative(kGuessedJoin));
+      guesses.push_back(alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura));
+      courses.push_back({side, number, upper ? number - 1 : 0, notch && notch->isGiven, guesses.back().sample(kSamples), 0});
     }
+  }
+
+  // Through the CT, where it shows them.
+  poll();
+  if (ct) traceCartilages(*ct, *anatomy, courses, settings.trace, poll);
+  for (std::size_t n = 0; n < courses.size(); ++n) {
+    const Course& c = courses[n];
+    const bool isSeen = ct && c.likeness > kLeastLikeness;
+    if (ct && !isSeen) note(guessed, c.side, c.rib);
+    if (isSeen && c.isEndGiven) courses[n].line.back() = guesses[n].at(1);
+    Cartilage cartilage{c.side, c.rib, isSeen ? fitCurve(resamplePolyline(c.line, kSamples), kControls) : guesses[n], c.joins, 0};
+    if (c.joins > 0) {
+      const Cartilage* upper = findCartilage(cage, c.side, c.joins);
+      cartilage.joinsAt = upper->curve.closest(cartilage.curve.at(1));
+    }
+    cage.cartilages.push_back(std::move(cartilage));
   }
   if (!guessed.empty()) warnings.push_back("the cartilage cannot be seen in the CT, its course is a guess: " + guessed);
   if (!missing.empty())

@@ -60,3 +60,19 @@ TEST(PlannedIndices, AreUnknownWithoutALevel) {
   anatomy.metrics.clear();
   EXPECT_FALSE(plannedIndices(anatomy, {}));
 }
+
+TEST(WithSkin, MeasuresAFrontThatCameForwardAgainstTheOldBack) {
+  // Skin: summits 90 mm before the vertebra at x = -60 and 60, a pit at -70 between; the back 60 mm behind it.
+  Anatomy anatomy = uprightChest();
+  for (LevelMetrics& level : anatomy.metrics) {
+    anatomy.skin.push_back({level.z, {{-120, 0, level.z}, {-60, -90, level.z}, {0, -70, level.z}, {60, -90, level.z}, {120, 0, level.z}}, false});
+    anatomy.vertebralFront.push_back({0, 0, level.z});
+    level.externalWidth = 260, level.externalPit = 130, level.externalFront = 150;
+  }
+  const auto forward = [](double z, Vec3, double) { return std::vector<Vec3>{{-60, -90, z}, {0, -85, z}, {60, -90, z}}; };
+  for (const LevelMetrics& level : withSkin(anatomy.metrics, anatomy, forward)) {
+    EXPECT_NEAR(level.externalPit, 145, 1e-9);
+    EXPECT_NEAR(level.externalFront, 150, 1e-9);
+    EXPECT_NEAR(level.concavityArea, 0.5 * 120 * 5, 1e-9);
+  }
+}

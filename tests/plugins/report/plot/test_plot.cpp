@@ -1,3 +1,4 @@
+#include "plugins/report/common/gnuplot.h"
 #include "plugins/report/plot/plot.h"
 
 #include "kernel/stage/error.h"

@@ -70,26 +70,6 @@ TEST(FitWall, OfASingleSliceIsItsSamples) {
   for (double r : fitWall(samples, usualWall(samples, {}, skin, 0, 5), 0, 0, 5, 0.02)) EXPECT_NEAR(r, 80, 1e-3);
 }
 
-TEST(MeasureLevel, GivesHallersLengthsOfAnEllipseWithASternum) {
-  // Inner wall: half axes 120 x 80 about (0, 0), the vertebra's front at y = 60, the sternum a bar at y = -30 to -20.
-  std::vector<Point2> wall;
-  for (int d = -120; d <= 120; ++d) wall.push_back({120 * std::sin(d * 0.0174533), -80 * std::cos(d * 0.0174533)});
-  const Loop sternum = {{-20, -30}, {20, -30}, {20, -20}, {-20, -20}};
-  const LevelMetrics m = measureLevel(5, sternum, {3, 60, 5}, wall);
-  EXPECT_NEAR(m.transverse, 240, 0.05);
-  EXPECT_NEAR(m.sternumToVertebra, 80, 1e-9);
-  EXPECT_NEAR(m.deepestInnerWall, 140, 1e-9);
-  EXPECT_NEAR(m.haller(), 3, 1e-3);
-  EXPECT_NEAR(m.correctionIndex(), 100 * 60.0 / 140, 1e-6);
-}
-
-TEST(MeasureLevel, LeavesUnknownLengthsZero) {
-  const LevelMetrics m = measureLevel(0, {}, {0, 0, 0}, {});
-  EXPECT_EQ(m.transverse, 0);
-  EXPECT_EQ(m.sternumToVertebra, 0);
-  EXPECT_EQ(m.deepestInnerWall, 0);
-}
-
 /// A sternum of 150 slices of 1 mm from z = 200: manubrium steep, body less so, the last 25 slices narrow; its body turned
 /// by `turn` degrees with the left side deeper.
 std::vector<SternumSlice> sternum(double turn) {
@@ -112,7 +92,7 @@ std::vector<SternumSlice> sternum(double turn) {
 }
 
 TEST(MeasureSternum, FindsJointsTiltAndTorsion) {
-  const Sternum s = measureSternum(sternum(12), 1);
+  const Sternum s = measureSternum(sternum(12), 1, 0);
   EXPECT_NEAR(s.jugularNotch.z, 200, 1e-9);
   EXPECT_NEAR(s.manubriosternalJoint.z, 155, 3);
   EXPECT_NEAR(s.xiphisternalJoint.z, 76, 1);
@@ -123,6 +103,21 @@ TEST(MeasureSternum, FindsJointsTiltAndTorsion) {
   for (std::size_t n = 2; n < s.notches.size(); ++n) EXPECT_LT(s.notches[n].position.z, s.notches[n - 2].position.z);
 }
 
-TEST(MeasureSternum, OfNothingIsEmpty) { EXPECT_TRUE(measureSternum({}, 1).axis.empty()); }
+TEST(MeasureSternum, TakesThePatientsTurnFromTheTorsion) {
+  EXPECT_NEAR(measureSternum(sternum(12), 1, 5).torsionDeg, measureSternum(sternum(12), 1, 0).torsionDeg - 5, 1e-9);
+}
+
+TEST(LungBehindRibs, IsTheGapWhereBothAreKnownAndSpreadsAround) {
+  // Lung on every ray of 40 slices, 8 mm behind the ribs in the lower half and right at them in the upper half.
+  std::vector<std::vector<double>> lung(40, std::vector<double>(PolarGrid::kAngles, 100));
+  std::vector<WallSample> ribs;
+  for (int s = 0; s < 40; s += 4)
+    for (int n = 0; n < PolarGrid::kAngles; n += 5) ribs.push_back({double(n), double(s), s < 20 ? 108.0 : 100.0, 1});
+  const auto behind = lungBehindRibs(ribs, lung, 0, 5);
+  EXPECT_NEAR(behind[2 * PolarGrid::kAngles + 80], 8, 0.3);
+  EXPECT_NEAR(behind[37 * PolarGrid::kAngles + 80], 0, 0.3);
+}
+
+TEST(MeasureSternum, OfNothingIsEmpty) { EXPECT_TRUE(measureSternum({}, 1, 0).axis.empty()); }
 
 }  // namespace

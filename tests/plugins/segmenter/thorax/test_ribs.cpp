@@ -167,4 +167,36 @@ TEST(NumberRibs, OfNothingOrOneRibIsNone) {
   EXPECT_EQ(numberRibs(one, 0, 300), Counting::none);
 }
 
+TEST(CutAcross, PartsARibFromOneThatTouchesItWhenItsUsualSizeIsKnown) {
+  // Two slender ribs that touch: together still small enough for one rib.
+  auto ct = solids::air({60, 60, 60}, {1, 1, 1});
+  std::fill(ct->hu.begin(), ct->hu.end(), std::int16_t(40));
+  solids::fill(*ct, 600, solids::cylinder(30, 25, 3, 5));
+  solids::fill(*ct, 600, solids::cylinder(30, 37, 3, 5));  // 2 mm apart: one contour at 160 HU
+  const Field field(*ct, Box{{0, 0, 0}, {60, 60, 60}}, 1);
+  EXPECT_GT(distance(cutAcross(field, {30, 26, 30}, {0, 0, 1}, 160).centre, {30, 25, 30}), 3) << "both at once";
+  const Cut cut = cutAcross(field, {30, 26, 30}, {0, 0, 1}, 160, M_PI * 3 * 5);
+  ASSERT_TRUE(cut.isFound);
+  EXPECT_NEAR(cut.centre.y, 25, 0.5);
+  EXPECT_GT(cut.meanHu, 400);
+}
+
+TEST(PatientTurn, IsTheAngleOfTheLinesBetweenTheTwoSides) {
+  std::vector<FoundRib> ribs;
+  const double a = 7 * M_PI / 180;
+  for (int number = 1; number <= 4; ++number)
+    for (Side side : {Side::right, Side::left}) {
+      FoundRib rib;
+      rib.side = side, rib.number = number, rib.body.reachesVertebra = true;
+      for (double t = 0; t <= 1; t += 0.05) {
+        const double x = (side == Side::right ? -1 : 1) * (20 + 100 * std::sin(2.5 * t)), y = -120 * t;
+        rib.body.line.push_back({std::cos(a) * x - std::sin(a) * y, std::sin(a) * x + std::cos(a) * y, -20.0 * number});
+      }
+      ribs.push_back(rib);
+    }
+  EXPECT_NEAR(patientTurn(ribs), 7, 1e-6);
+  ribs.resize(4);
+  EXPECT_EQ(patientTurn(ribs), 0) << "two pairs are too few";
+}
+
 }  // namespace

@@ -1,0 +1,43 @@
+// Corrections as a script makes them, and what the summary keeps of them.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string textOf(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
+  const fs::path folder = fs::temp_directory_path() / "pectora_test_correct";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ofstream(folder / "correct.lua") << R"(
+    local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }
+    local anatomy = segmenter.thorax(ct, { bone_regions = { -200, -200, -330, 200, 200, -320, 150 } })
+    local before = anatomy.ribs_left
+    anatomy = correct.rib(anatomy, { side = "left", number = 12 })
+    anatomy = correct.joint(anatomy, { joint = "notch", side = "right", number = 3, at = { -19, -75, -110 } })
+    print(before - anatomy.ribs_left)
+    local ok, message = pcall(correct.rib, anatomy, { side = "left", number = 12 })
+    print(ok, tostring(message))
+    report.files{ anatomy = anatomy, cage = splines.cartilage(anatomy, ct), path = ")" << (folder / "out").string() << R"(" })";
+  const std::string command = std::string(PECTORA_PROGRAM) + " run " + (folder / "correct.lua").string() + " > " + (folder / "log.txt").string() + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << textOf(folder / "log.txt");
+  const std::string log = textOf(folder / "log.txt"), summary = textOf(folder / "out/summary.json");
+  EXPECT_NE(log.find("1.0\n"), std::string::npos) << log;
+  EXPECT_NE(log.find("there is no such rib"), std::string::npos) << log;
+  EXPECT_NE(log.find("; left 1, "), std::string::npos) << log;
+  for (const char* kept : {"correct.rib", "correct.joint", "\"notch\"", "bone_regions"}) EXPECT_NE(summary.find(kept), std::string::npos) << kept;
+  fs::remove_all(folder);
+}

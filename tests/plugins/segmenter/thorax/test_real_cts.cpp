@@ -1,0 +1,134 @@
+// Real CTs have no truth; what is found must at least be consistent with itself and with anatomy.
+#include "kernel/host/runner.h"
+#include "kernel/value/anatomy.h"
+#include "kernel/value/curve.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+using namespace pectora;
+
+namespace {
+
+struct Quiet final : Messages {};
+
+/// The anatomy of a CT of the collection, segmented once; null where the collection is absent.
+std::shared_ptr<const Anatomy> anatomyOf(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<const Anatomy>> made;
+  const std::string folder = std::string(PECTORA_DATA) + "/ct/" + name + "/dicom";
+  if (!std::filesystem::exists(folder)) return nullptr;
+  if (!made.contains(name)) {
+    static Registry registry({PECTORA_PLUGINS});
+    static Quiet messages;
+    static std::atomic<bool> cancel{false};
+    Runner runner(registry, messages, cancel);
+    const auto ct = runner.run("loader.dicom", {{"path", folder}}, {});
+    made[name] = std::dynamic_pointer_cast<const Anatomy>(runner.run("segmenter.thorax", {}, {ct}).front().value);
+  }
+  return made[name];
+}
+
+class RealCt : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    anatomy = anatomyOf(GetParam());
+    if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/" << GetParam();
+  }
+  std::shared_ptr<const Anatomy> anatomy;
+};
+
+int ribsOn(const Anatomy& a, Side side) {
+  return int(std::count_if(a.ribs.begin(), a.ribs.end(), [&](const Rib& r) { return r.side == side; }));
+}
+
+/// Whether two segments of a line cross each other, seen along z.
+bool crossesItself(const std::vector<Vec3>& line) {
+  const auto turn = [](Vec3 a, Vec3 b, Vec3 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    for (std::size_t j = i + 2; j + 1 < line.size(); ++j)
+      if (turn(line[i], line[i + 1], line[j]) * turn(line[i], line[i + 1], line[j + 1]) < 0 &&
+          turn(line[j], line[j + 1], line[i]) * turn(line[j], line[j + 1], line[i + 1]) < 0)
+        return true;
+  return false;
+}
+
+TEST_P(RealCt, HasAsManyRibsOnTheRightAsOnTheLeft) {
+  EXPECT_EQ(ribsOn(*anatomy, Side::right), ribsOn(*anatomy, Side::left));
+  EXPECT_GE(ribsOn(*anatomy, Side::right), 5);
+}
+
+TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
+  for (Side side : {Side::right, Side::left}) {
+    const Rib* above = nullptr;
+    for (const Rib& rib : anatomy->ribs) {
+      if (rib.side != side) continue;
+      EXPECT_LT(polylineLength(rib.centerline), 420) << rib.number;   // the longest rib of an adult is about 330 mm
+      if (rib.number == 0) continue;
+      if (above) EXPECT_LT(rib.centerline.front().z, above->centerline.front().z) << sideName(side) << rib.number;
+      above = &rib;
+    }
+  }
+}
+
+TEST_P(RealCt, HasLayersThatRiseLevelByLevelAndDoNotCrossThemselves) {
+  ASSERT_EQ(anatomy->skin.size(), anatomy->pleura.size());
+  for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
+    if (n > 0) EXPECT_GT(anatomy->skin[n].z, anatomy->skin[n - 1].z);
+    EXPECT_EQ(anatomy->skin[n].z, anatomy->pleura[n].z);
+    EXPECT_FALSE(crossesItself(anatomy->pleura[n].points)) << "pleura at " << anatomy->skin[n].z;
+    if (n % 10 == 0 && !anatomy->skin[n].clipped) EXPECT_FALSE(crossesItself(anatomy->skin[n].points)) << "skin at " << anatomy->skin[n].z;
+  }
+}
+
+TEST_P(RealCt, HasAWallAsThickAsChestWallsAre) {
+  // From the pleura to the nearest skin of its level, where there are ribs: at least the setting's 4 mm; in front, where there is
+  // no arm and no flank, at most 90 mm, a large breast.
+  double lowest = 1e300;
+  for (const Rib& rib : anatomy->ribs)
+    for (const Vec3& p : rib.centerline) lowest = std::min(lowest, p.z);
+  for (std::size_t n = 0; n < anatomy->skin.size(); n += 5) {
+    if (anatomy->skin[n].clipped || anatomy->skin[n].z < lowest) continue;
+    const std::vector<Vec3>& inner = anatomy->pleura[n].points;
+    for (std::size_t i = 0; i < inner.size(); i += 5) {
+      double nearest = 1e300;
+      for (const Vec3& q : anatomy->skin[n].points) nearest = std::min(nearest, distance(q, inner[i]));
+      EXPECT_GT(nearest, 3.5) << anatomy->skin[n].z;
+      if (4 * i > inner.size() && 4 * i < 3 * inner.size()) EXPECT_LT(nearest, 90) << anatomy->skin[n].z;
+    }
+  }
+}
+
+TEST_P(RealCt, TakesNeitherCouchNorBlanketForBone) {
+  double back = -1e300;
+  for (const SliceContour& c : anatomy->contours)
+    if (c.structure == "vertebra")
+      for (const Vec3& p : c.points) back = std::max(back, p.y);
+  for (const SliceContour& c : anatomy->contours)
+    if (c.structure == "scapula" || c.structure == "rib")
+      for (const Vec3& p : c.points) ASSERT_LT(p.y, back + 60) << c.structure << " in slice " << c.slice;
+}
+INSTANTIATE_TEST_SUITE_P(Ct, RealCt, testing::Values("lidc_0314", "acrin_flt_013", "cptac_c3l00189"), [](const auto& each) { return std::string(each.param); });
+
+TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  for (Side side : {Side::right, Side::left})
+    for (int number = 1; number <= 12; ++number) EXPECT_NE(anatomy->rib(side, number), nullptr) << sideName(side) << number;
+  // The whole skin is in view in the lowest 191 slices of 1 mm.
+  ASSERT_EQ(std::count_if(anatomy->ranges.begin(), anatomy->ranges.end(), [](const SliceRange& r) { return r.what == "clipped skin"; }), 1);
+  const double lowest = anatomy->skin.front().z;
+  for (const SliceRange& range : anatomy->ranges)
+    if (range.what == "clipped skin") EXPECT_NEAR(range.low - lowest, 191, 3);
+}
+
+TEST(RealCts, OfThickSlicesSaysSo) {
+  const auto anatomy = anatomyOf("acrin_flt_013");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";
+  EXPECT_TRUE(std::any_of(anatomy->ranges.begin(), anatomy->ranges.end(), [](const SliceRange& r) { return r.what == "thick slices"; }));
+}
+
+}  // namespace
