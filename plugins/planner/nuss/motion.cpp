@@ -35,6 +35,31 @@ RigidMotion liftRotation(const Sternum& sternum, Vec3 deepest, double lift, Pivo
   return motion;
 }
 
+Vec3 frontOfSternum(const Sternum& sternum, double x, double z) {
+  const std::vector<Vec3>* nearest = nullptr;
+  for (const auto& contour : sternum.contours)
+    if (!contour.empty() && (!nearest || std::abs(contour.front().z - z) < std::abs(nearest->front().z - z))) nearest = &contour;
+  if (!nearest || std::abs(nearest->front().z - z) > 10) return {x, INFINITY, z};
+  // Of the points about as near to x as any, the most forward one.
+  double closest = INFINITY;
+  for (const Vec3& p : *nearest) closest = std::min(closest, std::abs(p.x - x));
+  Vec3 front{x, INFINITY, z};
+  for (const Vec3& p : *nearest)
+    if (std::abs(p.x - x) <= closest + 3 && p.y < front.y) front = p;
+  return front;
+}
+
+Vec3 deepestOfPit(const Anatomy& anatomy) {
+  const Sternum& sternum = anatomy.sternum;
+  const double middle = 0.5 * (sternum.manubriosternalJoint.z + sternum.xiphisternalJoint.z);
+  const LevelMetrics* deepest = nullptr;
+  for (const LevelMetrics& level : anatomy.metrics)
+    if (level.z <= middle && level.z >= sternum.xiphisternalJoint.z && (!deepest || level.depression() > deepest->depression())) deepest = &level;
+  if (!deepest) return sternum.deepest;
+  const Vec3 front = frontOfSternum(sternum, sternum.deepest.x, deepest->z);
+  return std::isfinite(front.y) ? front : sternum.deepest;
+}
+
 std::vector<std::vector<MovedCartilage>> motionFrames(const RibCage& cage, const RigidMotion& motion, int count) {
   std::vector<std::vector<MovedCartilage>> frames;
   for (int f = 0; f < count; ++f) frames.push_back(followSternum(cage, motion.part(double(f) / (count - 1))));

@@ -17,6 +17,15 @@ enum class Pivot {
 /// the sternum's joint. Throws Error if no rotation below 60 degrees lifts so far.
 RigidMotion liftRotation(const Sternum& sternum, Vec3 deepest, double lift, Pivot pivot, double pivotDistance);
 
+/// The deepest point of the pit on the front of the sternum: at the level in the body's caudal half where the sternum lies farthest
+/// behind the most forward inner wall. The lower sternum runs forwards, so that its most posterior point lies above
+/// that level; it is taken where no level was measured.
+Vec3 deepestOfPit(const Anatomy& anatomy);
+
+/// The point of the sternum's front at height z, as near to `x` as its contour there goes; an infinite y if the nearest contour
+/// is farther than 10 mm from z.
+Vec3 frontOfSternum(const Sternum& sternum, double x, double z);
+
 /// Cartilages at `count` >= 2 equal steps of the motion.
 std::vector<std::vector<MovedCartilage>> motionFrames(const RibCage& cage, const RigidMotion& motion, int count);
 

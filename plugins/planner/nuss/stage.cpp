@@ -33,7 +33,7 @@ class Nuss final : public Stage {
     const Sternum& sternum = anatomy.sternum;
     if (sternum.contours.empty())
       throw Error("no sternum was found, so nothing can be lifted").advise("Use a CT that holds the body of the sternum");
-    plan->deepest = pointAtLevel(sternum);
+    plan->deepest = pointAtLevel(anatomy);
 
     // The lift, in mm or as a part of the pit.
     double lift = lift_;
@@ -60,22 +60,14 @@ class Nuss final : public Stage {
   }
 
  private:
-  // The deepest point of the sternum's front, or the most forward contour point at the wanted level.
-  Vec3 pointAtLevel(const Sternum& sternum) const {
-    if (level_ == 0) return sternum.deepest;
-    const double z = sternum.deepest.z + level_;
-    Vec3 best;
-    double nearest = INFINITY;
-    for (const auto& contour : sternum.contours) {
-      if (contour.empty() || std::abs(contour.front().z - z) >= nearest) continue;
-      nearest = std::abs(contour.front().z - z);
-      best = contour.front();
-      for (const Vec3& p : contour)
-        if (p.y < best.y) best = p;
-    }
-    if (nearest > 10)
+  // The deepest point of the pit, or the sternum's front at the wanted level.
+  Vec3 pointAtLevel(const Anatomy& anatomy) const {
+    const Vec3 deepest = deepestOfPit(anatomy);
+    if (level_ == 0) return deepest;
+    const Vec3 front = frontOfSternum(anatomy.sternum, deepest.x, deepest.z + level_);
+    if (!std::isfinite(front.y))
       throw Error("the sternum does not reach to that level").of("level").given(fmt::format("{:g} mm", level_)).advise("Bring the bar closer to the deepest point");
-    return best;
+    return front;
   }
 
   double lift_ = 30, correction_ = 0, level_ = 0, pivotDistance_ = 160;

@@ -40,6 +40,27 @@ RibCage ribRing() {
 
 }  // namespace
 
+TEST(DeepestOfPit, LiesWhereTheSternumIsFarthestBehindTheWallAndNotWhereItIsMostPosterior) {
+  // A sternum that runs forwards below z = -130 in a pit that is deepest at z = -155.
+  Anatomy anatomy;
+  Sternum& s = anatomy.sternum;
+  s.manubriosternalJoint = {0, -90, -86};
+  s.xiphisternalJoint = {0, -88, -180};
+  for (double z = -180; z <= -40; z += 5) {
+    const double y = z < -130 ? -80 - 0.2 * (-130 - z) : -80 - 0.1 * (z + 130);
+    s.contours.push_back({{-16, y, z}, {4, y, z}, {16, y, z}, {16, y + 10, z}, {4, y + 10, z}, {-16, y + 10, z}});
+    const double wall = -90 - 30 * std::exp(-(z + 155) * (z + 155) / 800);   // the most forward inner wall
+    anatomy.metrics.push_back({.z = z, .transverse = 240, .sternumToVertebra = 20 - y - 40, .deepestInnerWall = -wall - 20});
+  }
+  s.deepest = {4, -80, -130};
+  const Vec3 found = deepestOfPit(anatomy);
+  EXPECT_NEAR(found.z, -155, 5.1);   // to a level
+  EXPECT_NEAR(found.x, 4, 1e-9);
+  EXPECT_NEAR(found.y, -80 - 0.2 * (-130 - found.z), 1e-9);
+  anatomy.metrics.clear();
+  EXPECT_EQ(deepestOfPit(anatomy).z, -130);
+}
+
 TEST(LiftRotation, BringsTheDeepestPointForwardByTheLift) {
   const Sternum s = plateSternum();
   for (const Pivot pivot : {Pivot::sternoclavicular, Pivot::manubrium})
