@@ -51,8 +51,9 @@ struct FollowedTube {
   std::vector<double> score;
 };
 
-/// `valueAt` is the CT (HU) at a position. Along the thin axis, values within 1.5 mm of air are those just before that. It is averaged along the line (Gaussian of 2.5 mm) and across it (0.8 mm) before the
-/// tissue is asked, for that asks for a mean and not for noise. At least two sections.
+/// `valueAt` is the CT (HU) at a position. Along the thin axis, values within 1.5 mm of air are replaced by those just before that.
+/// Then it is averaged along the line (Gaussian of 2.5 mm) and across it (0.8 mm) before the tissue is asked, for that asks for a
+/// mean and not for noise. At least two sections.
 FollowedTube followTube(std::span<const TubeSection> sections, const std::function<float(Vec3)>& valueAt,
                         const TubeTissue& tissue, std::span<const TubeNeighbour> neighbours, const TubeSearch& search);
 

@@ -65,14 +65,14 @@ Scorecard readScorecard(const std::string& title, const std::vector<std::string>
 
 double miss(double value, double goal, bool isLeast) {
   if (goal <= 0 || !std::isfinite(value)) return NAN;
-  return isLeast ? (value >= goal ? 1.0 : 1 + (goal - value) / goal) : std::abs(value) / goal;
+  return isLeast ? (value >= goal ? 0.0 : 1 + (goal - value) / goal) : std::abs(value) / goal;
 }
 
 std::string gnuplotCommands(const Scorecard& card, const std::string& pngPath) {
   const std::size_t columns = card.columns.size(), rows = card.rows.size();
   std::string text = fmt::format("set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,11'\n", 240 + 96 * columns, 150 + 26 * rows);
   text += "set output " + inQuotes(pngPath) + "\nset title " + inQuotes(card.title) + "\n";
-  text += "unset key\nunset colorbox\nset border linecolor '#a0a0a0'\nset cbrange [0:2]\n";
+  text += "unset key\nunset colorbox\nset bmargin 5\nset tics textcolor '#303030'\nset border linecolor '#a0a0a0'\nset cbrange [0:2]\n";
   text += "set palette defined (0 '#e4f3e4', 0.999 '#c2e3c2', 1.0 '#fdebc8', 2 '#e79a84')\n";
   text += fmt::format("set xrange [-0.5:{}.5]\nset yrange [{}.5:-0.5]\n", columns - 1, rows - 1);
   // Names, with the goal below the column's.

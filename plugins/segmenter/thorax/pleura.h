@@ -44,9 +44,10 @@ struct UsualWall {
   std::vector<double> radius;   ///< mm
   std::vector<double> weight;   ///< of a sample there
 };
-/// As far below the skin as nine tenths of the samples within 6 degrees at least are (on the side where that is less), but not beyond the radius that 97 %
-/// of them and of the lung's keep within; at the sides (more than 60 degrees from the front) not beyond their median. The weight is faint (1e-5) within 40 mm of a sample at that
-/// angle and 1e-3 beyond. `skinRadius[s][n]`, negative where unknown.
+/// As far below the skin as nine tenths of the samples within 6 degrees at least are (on the side of the body where that is
+/// less), but not beyond the radius that 97 % of them and of the lung's keep within; at the sides (more than 60 degrees from
+/// the front) not beyond their median. The weight is faint (1e-5) within 40 mm of a sample at that angle and 1e-3 beyond.
+/// `skinRadius[s][n]`, negative where unknown.
 UsualWall usualWall(const std::vector<WallSample>& samples, const std::vector<WallSample>& lung,
                     const std::vector<std::vector<double>>& skinRadius, int firstSlice, double sliceSpacing);
 

@@ -16,9 +16,9 @@ struct Cut {
 };
 
 /// Cuts the bone by the plane through `p` normal to `direction`: of the outer contours at `boneHu` within 12 mm the one
-/// around p, or else the nearest within 5 mm. If p lies in a contour too large for a rib, or 1.3 times (thick slices: 2.2 times) larger than the rib
-/// usually is (`usualAreaMm2`, 0: not known), higher levels up to 5 times boneHu are tried, at which bones that touch come
-/// apart. Not found if its area is outside 12 to 300 mm^2 or it is longer than a rib.
+/// around p, or else the nearest within 5 mm. If p lies in a contour too large for a rib, or 1.3 times (in slices of more
+/// than 3 mm: 2.2 times) larger than the rib usually is (`usualAreaMm2`, 0: not known), higher levels up to 5 times boneHu
+/// are tried, at which bones that touch come apart. Not found if its area is outside 12 to 300 mm^2 or it is longer than a rib.
 Cut cutAcross(const Field& field, Vec3 p, Vec3 direction, double boneHu, double usualAreaMm2 = 0);
 
 /// A centreline with the section area at every point.
@@ -31,9 +31,10 @@ struct MarchedRib {
 /// Straightens out a rough line (from back to front). Its inner part is centred on cuts normal to it; then the line is
 /// carried on from both ends, 2 mm a step along its own course and centred on each new cut. In front it ends where the
 /// bone ends: three steps without a cut, with a cut below 0.35 of the usual area or 0.83 of the usual brightness (calcified
-/// cartilage has no cortex), or a turn by 37 degrees (its specks lie off the line); where another rib touches it, it goes straight on for at most 30 mm. Behind it goes on to 20 mm from the middle of the vertebral body; where rib and
-/// transverse process cannot be told apart it goes straight on, bending gently towards the body.
-/// An empty line if fewer than five cuts were found.
+/// cartilage has no cortex), or a turn by 37 degrees (its specks lie off the line); where another rib touches it, it goes
+/// straight on for at most 30 mm. Behind it goes on to 20 mm from the middle of the vertebral body; where rib and transverse
+/// process cannot be told apart it goes straight on, bending gently towards the body. An empty line if fewer than five cuts
+/// were found.
 MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Spine& spine, double boneHu);
 
 }  // namespace pectora::thorax

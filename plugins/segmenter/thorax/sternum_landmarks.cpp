@@ -136,15 +136,15 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
   constexpr double kDegrees = 180 / std::numbers::pi;
   if (xiphoid > joint) sternum.tiltDeg = std::atan(slopeOf(sternum.axis, joint, xiphoid)) * kDegrees;
   const std::size_t reach = std::max<std::size_t>(1, std::size_t(15 / sliceSpacing));
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  double levels = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t k = std::max(joint, deepest > reach ? deepest - reach : 0); k <= std::min(xiphoid, deepest + reach); ++k) {
     if (!slices[k].isSeen) continue;
     const double from = double(k) - double(deepest), angle = sectionTorsion(sternum.contours[k]) - turnDeg;
-    n += 1, x += from, y += angle, xx += from * from, xy += from * angle;
+    levels += 1, x += from, y += angle, xx += from * from, xy += from * angle;
   }
   // The regression line's value at the deepest level.
-  const double square = n * xx - x * x;
-  if (n > 0) sternum.torsionDeg = square > 0 ? (y * xx - x * xy) / square : y / n;
+  const double square = levels * xx - x * x;
+  if (levels > 0) sternum.torsionDeg = square > 0 ? (y * xx - x * xy) / square : y / levels;
 
   // Notches: from the manubrium's part for rib 1, the body's for ribs 3 to 7.
   constexpr double kBodyPart[7] = {0, 0, 0.27, 0.51, 0.71, 0.85, 0.95};

@@ -26,7 +26,7 @@ struct TraceSettings {
 /// other from above, then closely with all the others as neighbours. Muscle is taken to be 45 HU darker. Sections are ellipses
 /// of 14 x 10 mm in a chest 235 mm wide inside, and in proportion in others; their shorter axis is normal to the pleura.
 /// The cartilages that join another one nestle to it long before nobody can tell them apart; they end 0.6 of the way along it.
-/// `poll` is called now and then.
+/// The others begin within 1.5 mm of their guess's start and end near to their guess's end. `poll` is called now and then.
 void traceCartilages(const Volume& ct, const Anatomy& anatomy, std::vector<Course>& courses, const TraceSettings& settings,
                      const std::function<void()>& poll);
 

@@ -68,7 +68,9 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
       if (rib.side != side) continue;
       EXPECT_LT(polylineLength(rib.centerline), 420) << rib.number;   // the longest rib of an adult is about 330 mm
       if (rib.number == 0) continue;
-      if (above) EXPECT_LT(rib.centerline.front().z, above->centerline.front().z) << sideName(side) << rib.number;
+      if (above) {
+        EXPECT_LT(rib.centerline.front().z, above->centerline.front().z) << sideName(side) << rib.number;
+      }
       above = &rib;
     }
   }
@@ -77,10 +79,14 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
 TEST_P(RealCt, HasLayersThatRiseLevelByLevelAndDoNotCrossThemselves) {
   ASSERT_EQ(anatomy->skin.size(), anatomy->pleura.size());
   for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
-    if (n > 0) EXPECT_GT(anatomy->skin[n].z, anatomy->skin[n - 1].z);
+    if (n > 0) {
+      EXPECT_GT(anatomy->skin[n].z, anatomy->skin[n - 1].z);
+    }
     EXPECT_EQ(anatomy->skin[n].z, anatomy->pleura[n].z);
     EXPECT_FALSE(crossesItself(anatomy->pleura[n].points)) << "pleura at " << anatomy->skin[n].z;
-    if (n % 10 == 0 && !anatomy->skin[n].clipped) EXPECT_FALSE(crossesItself(anatomy->skin[n].points)) << "skin at " << anatomy->skin[n].z;
+    if (n % 10 == 0 && !anatomy->skin[n].clipped) {
+      EXPECT_FALSE(crossesItself(anatomy->skin[n].points)) << "skin at " << anatomy->skin[n].z;
+    }
   }
 }
 
