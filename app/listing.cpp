@@ -102,13 +102,13 @@ std::string describeJson(Registry& registry, Runner& runner, const std::string& 
 std::string explanationText(const Explanation& e) {
   std::string text = fmt::format("{}: {} skin points, {} unknown positions, {} anchors on ribs, cartilages and sternum\n\n",
                                  e.solver, e.skinPoints, e.freeNodes, e.anchors);
-  text += fmt::format("{:<22} {:<6} {:>9} {:>10} {:>8}  {}\n", "effect", "runs", "springs", "RMS, mm", "max, mm", "why, or with what");
+  text += fmt::format("{:<24} {:<6} {:>9} {:>10} {:>8}  {}\n", "effect", "runs", "springs", "RMS, mm", "max, mm", "why, or with what");
   for (const EffectUse& use : e.effects) {
     std::string notes = use.isActive ? "called by the scene" : use.reason;
     for (const std::string& note : use.notes) notes += "; " + note;
     if (!use.notProbed.empty()) notes += "; " + use.notProbed;
     const auto figure = [](double mm) { return std::isnan(mm) ? std::string("-") : fmt::format("{:.2f}", mm); };
-    text += fmt::format("{:<22} {:<6} {:>9} {:>10} {:>8}  {}\n", use.id, use.isActive ? "yes" : "no", use.springs, figure(use.changeRms), figure(use.changeMax), notes);
+    text += fmt::format("{:<24} {:<6} {:>9} {:>10} {:>8}  {}\n", use.id, use.isActive ? "yes" : "no", use.springs, figure(use.changeRms), figure(use.changeMax), notes);
   }
   text += fmt::format("RMS and max: how far the skin lies elsewhere without the effect, where the operation moves it by more than 3 mm,\n"
                       "probed by rough solves{}\n", std::isnan(e.uncertainty) ? "" : fmt::format("; the RMS is right to about {:.2f} mm", e.uncertainty));
