@@ -227,7 +227,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
       if (outputs.size() != descriptor.outputs.size())
         throw std::logic_error(fmt::format("returned {} values instead of {}", outputs.size(), descriptor.outputs.size()));
     } else {
-      outputs = {solve(plugin, std::move(solver), inputs, accept, host, record->heldMegabytes)};
+      outputs = {solve(plugin, std::move(solver), inputs, accept, host, *record)};
     }
     record->seconds = secondsSince(start);
     record->cpuSeconds = cpuSeconds() - cpuBefore;
@@ -253,7 +253,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
 }
 
 std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept,
-                                            Host& host, double& heldMegabytes) {
+                                            Host& host, Record& record) {
   auto scene = std::dynamic_pointer_cast<const Scene>(inputs[0].front().value);
   const auto plan = std::dynamic_pointer_cast<const Plan>(inputs[1].front().value);
   std::optional<Probe> probe;
@@ -266,14 +266,17 @@ std::shared_ptr<const Motion> Runner::solve(const Plugin& plugin, std::unique_pt
     probe = std::move(choice.probe);
   }
   const double heapBefore = heapMegabytes();
+  const auto begin = std::chrono::steady_clock::now();
   WarmSolve warm(scene, plugin.descriptor->id, std::move(solver), registry_, host);
   if (explanations) {
     explain(plugin, warm.compiled(), *scene, probe ? *probe : probeEffects(*scene, *plan, registry_, host));
     throw Explained();
   }
   if (!inputs[2].empty()) warm.startFrom(*std::dynamic_pointer_cast<const Motion>(inputs[2].front().value));
+  warm.prepare(host);
+  record.prepareSeconds = secondsSince(begin);
   const std::shared_ptr<const Motion> motion = warm.solve(*plan, host);
-  heldMegabytes = std::max(0.0, heapMegabytes() - heapBefore);
+  record.heldMegabytes = std::max(0.0, heapMegabytes() - heapBefore);
 
   if (motion->invertedPrisms > 0)
     host.warn(fmt::format("{} cells between skin and pleura turned inside out, the first at row {}, column {}",

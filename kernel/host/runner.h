@@ -70,7 +70,7 @@ class Runner {
   std::vector<Handle> fromCache(const std::string& key);
   void keep(const std::string& key, const std::vector<Handle>& handles);
   std::shared_ptr<const Motion> solve(const Plugin& plugin, std::unique_ptr<Solver> solver, const PortInputs& inputs, bool accept, Host& host,
-                                      double& heldMegabytes);
+                                      Record& record);
   void explain(const Plugin& plugin, const Compiled& compiled, const Scene& scene, const Probe& probe);
 
   Registry& registry_;

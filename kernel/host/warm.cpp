@@ -52,8 +52,12 @@ void WarmSolve::startFrom(const Motion& motion) {
 
 void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
 
-std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
+void WarmSolve::prepare(Host& host) {
   if (!session_) session_ = solver_->prepare(*compiled_.system, host);
+}
+
+std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
+  prepare(host);
   const Drive drive = makeDrive(*rest_, compiled_, plan);
   Solution solution = session_->solve(drive, start_.size() ? &start_ : nullptr, host);
 

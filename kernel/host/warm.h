@@ -22,6 +22,8 @@ class WarmSolve {
   void startFrom(const Motion& motion);
   /// The same for positions of all nodes, such as a solver shows on its way (Host::preview). Empty: at rest.
   void startFrom(NodeVectors positions);
+  /// Makes the solver ready, which the first solve otherwise does.
+  void prepare(Host& host);
   /// Solves for the end of `plan`, whatever the status. Throws Cancelled; then the next solve begins where this one did.
   std::shared_ptr<const Motion> solve(const Plan& plan, Host& host);
 
@@ -30,7 +32,7 @@ class WarmSolve {
   std::shared_ptr<const Scene> rest_;   // without the loads that the CT shows it under; the scene itself if there are none
   std::unique_ptr<Solver> solver_;
   Compiled compiled_;
-  std::unique_ptr<Session> session_;   // made by the first solve
+  std::unique_ptr<Session> session_;   // null until it is made ready
   NodeVectors start_;                  // empty: at rest
 };
 

@@ -18,7 +18,8 @@ void pushFact(lua_State* lua, const Fact& fact) {
   else lua_pushstring(lua, std::get<std::string>(fact.value).c_str());
 }
 
-// value.name: a fact, a part, `kind`, or what its stage took to make it: `seconds`, `cpu_seconds`, and a solver's `megabytes`.
+// value.name: a fact, a part, `kind`, or what its stage took to make it: `seconds`, `cpu_seconds`, and a solver's
+// `prepare_seconds` and `megabytes`.
 int handleIndex(lua_State* lua) {
   const Handle& handle = *toHandle(lua, 1);
   const std::string name = luaL_checkstring(lua, 2);
@@ -26,9 +27,10 @@ int handleIndex(lua_State* lua) {
   if (handle.record) {
     if (name == "seconds") return lua_pushnumber(lua, handle.record->seconds), 1;
     if (name == "cpu_seconds") return lua_pushnumber(lua, handle.record->cpuSeconds), 1;
+    if (name == "prepare_seconds") return lua_pushnumber(lua, handle.record->prepareSeconds), 1;
     if (name == "megabytes") return lua_pushnumber(lua, handle.record->heldMegabytes), 1;
   }
-  std::vector<std::string> known{"kind", "seconds", "cpu_seconds", "megabytes"};
+  std::vector<std::string> known{"kind", "seconds", "cpu_seconds", "prepare_seconds", "megabytes"};
   for (const Fact& fact : handle.value->facts()) {
     if (fact.name == name) return pushFact(lua, fact), 1;
     known.push_back(fact.name);

@@ -20,6 +20,7 @@ struct Record {
   std::string key;                                            ///< cache key: hash of the stage, its plugin's file, settings and inputs' keys
   double seconds = 0;                                         ///< wall time of the run that made it
   double cpuSeconds = 0;                                      ///< of all threads
+  double prepareSeconds = 0;                                  ///< of `seconds`, what a solver took before it solved: terms, coarse grids, factors
   double heldMegabytes = 0;                                   ///< heap that a solver, its system and its result held at the end; 0 for other stages
   double peakMegabytes = 0;                                   ///< peak resident memory of the process by then
 };
