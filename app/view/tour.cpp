@@ -21,9 +21,9 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   const auto picture = [&](const char* name) {
     ImGui::GetIO().MousePos = {-1, -1};
     rest();
-    // Six bits a colour are enough for a page, and a third smaller.
+    // Five bits a colour are enough for a page, and half as large.
     std::vector<unsigned char> rgba = target->pixels();
-    for (unsigned char& c : rgba) c = static_cast<unsigned char>((c & 0xFC) | c >> 6);
+    for (unsigned char& c : rgba) c = static_cast<unsigned char>((c & 0xF8) | c >> 5);
     writePng(options.tour + "/" + name + ".png", options.width, options.height, rgba);
   };
   rest();
@@ -50,6 +50,11 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   hand.click("landmarks.place");
   picture("landmarks");
   hand.click("landmarks.place");
+  hand.click("tab.accuracy");
+  hand.frames(3);
+  hand.click("study");
+  rest();
+  picture("accuracy");
   hand.click("tab.script");
   hand.click("console.line");
   hand.type("plan.haller_index, motion.status", true);

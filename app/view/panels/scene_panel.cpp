@@ -96,7 +96,7 @@ void ScenePanel::draw(Context& context, float width, float height) {
   setClip(context);
   parts_.update(context);
   // A new patient is shown whole, from the front and a little from above and the left.
-  const std::shared_ptr<const void> scene = context.results->cage.value;
+  const std::shared_ptr<const void> scene = context.results->after.value ? context.results->after.value : context.results->cage.value;
   if (scene && framed_ != scene && !parts_.skin().points.empty()) {
     if (!framed_) viewport_.camera.yaw = 0.45, viewport_.camera.pitch = 0.18;
     const auto [center, radius] = parts_.bounds();
