@@ -21,9 +21,9 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   const auto picture = [&](const char* name) {
     ImGui::GetIO().MousePos = {-1, -1};
     rest();
-    // Five bits a colour are enough for a page, and half as large.
+    // Six bits a colour are enough for a page, and a third smaller.
     std::vector<unsigned char> rgba = target->pixels();
-    for (unsigned char& c : rgba) c = static_cast<unsigned char>((c & 0xF8) | c >> 5);
+    for (unsigned char& c : rgba) c = static_cast<unsigned char>((c & 0xFC) | c >> 6);
     writePng(options.tour + "/" + name + ".png", options.width, options.height, rgba);
   };
   rest();

@@ -41,7 +41,7 @@ struct Decades {
   float part(double value) const { return float((std::log10(value) - low) / (high - low)); }
 };
 
-double seen(double error) { return std::max(error, 1e-7); }   // what is nearer than a double can tell lies on the edge
+double seen(double error) { return std::max(error, 1e-4); }   // what is nearer than that lies on the edge
 
 }  // namespace
 
@@ -87,7 +87,7 @@ void accuracyPicture(Context& context, float width, float height) {
   for (const StudyPoint& p : study.points) time.hold(std::max(p.milliseconds, 0.01)), error.hold(seen(p.rms));
 
   // The axes, a line for each decade.
-  const ImVec2 low{corner.x + 5.5f * em, corner.y + 3.2f * em}, high{corner.x + width - 2 * em, corner.y + height - 4 * em};
+  const ImVec2 low{corner.x + 5.5f * em, corner.y + 4.8f * em}, high{corner.x + width - 2 * em, corner.y + height - 4 * em};
   const auto x = [&](double ms) { return low.x + (high.x - low.x) * time.part(std::max(ms, 0.01)); };
   const auto y = [&](double mm) { return high.y - (high.y - low.y) * error.part(seen(mm)); };
   const ImU32 grid = IM_COL32(58, 65, 74, 255), ink = IM_COL32(200, 206, 212, 255);
@@ -103,7 +103,7 @@ void accuracyPicture(Context& context, float width, float height) {
     const std::string text = power(d);
     list->AddText({low.x - ImGui::CalcTextSize(text.c_str()).x - 0.5f * em, at - em / 2}, ink, text.c_str());
   }
-  const char *across = "time from rest, ms", *title = "Distance from the finest skin, RMS over the pit, mm";
+  const char *across = "time from rest, ms", *title = "Distance from the finest skin, RMS over the pit, mm (0.0001 or less on the lower edge)";
   list->AddText({(low.x + high.x - ImGui::CalcTextSize(across).x) / 2, high.y + 1.9f * em}, ink, across);
   list->AddText({low.x, corner.y + 0.8f * em}, ink, title);
 
@@ -111,7 +111,7 @@ void accuracyPicture(Context& context, float width, float height) {
   const float noise = y(kScannerNoise);
   for (float at = low.x; at < high.x; at += em) list->AddLine({at, noise}, {std::min(at + em / 2, high.x), noise}, ImGui::GetColorU32(kMuted), 1.5f * context.scale);
   const char* told = "noise of a scanner, 0.6 mm";
-  list->AddText({high.x - ImGui::CalcTextSize(told).x - 0.4f * em, noise - 1.3f * em}, ImGui::GetColorU32(kMuted), told);
+  list->AddText({low.x + 0.4f * em, noise - 1.3f * em}, ImGui::GetColorU32(kMuted), told);
 
   // A line for each solver, from coarse to fine, named at its finest.
   for (const std::string& solver : solvers) {
@@ -141,9 +141,9 @@ void accuracyPicture(Context& context, float width, float height) {
   for (auto solver = solvers.rbegin(); solver != solvers.rend(); ++solver) {
     const std::string name = shortName(*solver);
     at -= ImGui::CalcTextSize(name.c_str()).x;
-    list->AddText({at, corner.y + 0.8f * em}, ink, name.c_str());
+    list->AddText({at, corner.y + 2.4f * em}, ink, name.c_str());
     at -= 0.8f * em;
-    list->AddCircleFilled({at, corner.y + 1.3f * em}, 0.33f * em, colorOf(solvers, *solver));
+    list->AddCircleFilled({at, corner.y + 2.9f * em}, 0.33f * em, colorOf(solvers, *solver));
     at -= 1.2f * em;
   }
   ImGui::Dummy({width, height});

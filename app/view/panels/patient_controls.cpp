@@ -9,7 +9,7 @@ void patientControls(Context& context) {
   std::string& path = context.typedPath;
   heading("Open");
   ImGui::SetNextItemWidth(-70 * context.scale);
-  const bool isEntered = textField("##path", "Folder of DICOM files or results, script, scan", path, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool isEntered = textField("##path", "Folder, script or scan", path, ImGuiInputTextFlags_EnterReturnsTrue);
   mark("open.path");
   ImGui::SameLine(0, 6 * context.scale);
   if ((button("Open", "open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);

@@ -38,7 +38,7 @@ void ScenePanel::toolbar(Context& context) {
   hint("Show all of it. Drag turns, right drag moves, the wheel zooms, a click tells about a point.");
 
   ImGui::SameLine(0, 16 * context.scale);
-  ImGui::SetNextItemWidth(118 * context.scale);
+  ImGui::SetNextItemWidth(134 * context.scale);
   static constexpr const char* kLooks[] = {"Skin", "Glass skin", "Displacement", "No skin"};
   if (ImGui::BeginCombo("##skin", kLooks[int(o.skin)])) {
     for (int i = 0; i < 4; ++i) {

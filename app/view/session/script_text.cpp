@@ -66,9 +66,9 @@ std::string comparisonText(const Choices& c, const std::string& before, const st
   } else {
     text += "local on_scan, on_ct = scan_landmarks, ct_landmarks\n";
   }
-  text += fmt::format("local aligned, by_landmarks = register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
+  text += fmt::format("local aligned, by_landmarks =\n  register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
   if (c.usesIcp) text += fmt::format("local by_icp\naligned, by_icp = register.icp(aligned, {}, {})\n", before, after);
-  return text + fmt::format("local comparison = comparer.surface(aligned, {}, {{ name = \"scan_vs_simulated\", unchanged = {}{} }})\n\n", after, before, more);
+  return text + fmt::format("local comparison = comparer.surface(aligned, {}, {{\n  name = \"scan_vs_simulated\", unchanged = {}{} }})\n\n", after, before, more);
 }
 
 }  // namespace
@@ -95,9 +95,9 @@ std::string scriptOf(const Choices& c) {
 
   const std::string compared = comparisonText(c, "motion.before", "motion.after", ", copied = motion.copied");
   std::string lists;
-  if (!compared.empty()) lists = fmt::format(",\n              registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}", c.usesIcp ? ", by_icp" : "");
+  if (!compared.empty()) lists = fmt::format(",\n  registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}", c.usesIcp ? ", by_icp" : "");
   text += compared;
-  text += "report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion" + lists + ", path = \"result\" }\n";
+  text += "report.files{\n  ct = ct, anatomy = anatomy, cage = cage,\n  scene = scene, plan = plan, motion = motion" + lists + ",\n  path = \"result\" }\n";
   text += "print(plan)\nprint(motion)\n";
   return text + (compared.empty() ? "" : "print(comparison)\n");
 }

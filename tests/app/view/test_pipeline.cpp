@@ -250,4 +250,22 @@ TEST(Pipeline, ExportsWhatScriptsExport) {
   s.worker.run("export", [&](Pipeline& pipeline) { pipeline.exportTo(folder.string()); });
   s.wait();
   for (const char* file : {"summary.json", "after.ply", "bar.ply", "scan_vs_simulated.vtp"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+
+  // And what was exported is opened again, as a folder of results.
+  const auto made = s.worker.results();
+  Choices kept = s.choices;
+  kept.source = Source::result;
+  kept.loader = {"", {{"path", folder.string()}}};
+  kept.ctLandmarks = kept.scanLandmarks = {};
+  const auto r = s.after(kept);
+  EXPECT_EQ(r->error, "");
+  EXPECT_FALSE(r->motionValue());
+  const auto* after = Results::as<Mesh>(r->after);
+  ASSERT_TRUE(after);
+  EXPECT_TRUE(Results::as<Mesh>(r->barMesh));
+  EXPECT_LT(largestDistance(made->motionValue()->outer, after->points), 1e-3) << "files hold floats";
+  // Its script runs by itself.
+  std::ofstream(folder / "compare.lua") << scriptOf(kept);
+  const std::string command = "cd " + folder.string() + " && " PECTORA_PROGRAM " run --quiet compare.lua > out.txt 2> err.txt";
+  EXPECT_EQ(exitCode(command), 0) << readFile(folder / "err.txt") << scriptOf(kept);
 }
