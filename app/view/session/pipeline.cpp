@@ -367,6 +367,9 @@ Choices Pipeline::openedScript(const Choices& present, const std::string& path) 
     engine.run(path, arguments);
   } catch (const Cancelled&) {
     if (cancel_.load()) throw;   // by the user; otherwise the script has come as far as is shown
+  } catch (const Error& error) {
+    if (!calls.hasPrediction()) throw;
+    messages_.warn("script", error.what());   // what came before can be shown
   }
   if (calls.hasPatient()) return calls.choices(present);
   return withPreset(present, engine, path);

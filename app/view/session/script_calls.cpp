@@ -1,7 +1,15 @@
 #include "app/view/session/script_calls.h"
 
+#include <algorithm>
+
 namespace pectora::view {
 namespace {
+
+// By name: a table of Lua has no order of its own.
+Settings sorted(Settings settings) {
+  std::sort(settings.begin(), settings.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return settings;
+}
 
 std::string stageOf(const std::string& id) { return id.substr(0, id.find('.')); }
 
@@ -17,7 +25,7 @@ Landmarks placedBy(const std::vector<Handle>& handles) {
 void ScriptCalls::starting(const std::string& id, const Settings& settings, const Runner::PortInputs& inputs) {
   const std::string stage = stageOf(id);
   if (stage == "report" || (stage == "solver" && hasSolve_)) throw Cancelled();
-  const PluginChoice call{id, settings};
+  const PluginChoice call{id, sorted(settings)};
   if (stage == "loader") choices_.loader = call, choices_.source = id == "loader.phantom" ? Source::phantom : Source::dicom;
   else if (stage == "segmenter") choices_.segmenter = call;
   else if (stage == "splines") choices_.splines = call;
@@ -31,7 +39,7 @@ void ScriptCalls::starting(const std::string& id, const Settings& settings, cons
     hasModel_ = true;
     for (const std::vector<Handle>& port : inputs)
       for (const Handle& handle : port)
-        if (const auto* effect = dynamic_cast<const EffectCall*>(handle.value.get())) choices_.effects.push_back({{effect->id, effect->settings}, true});
+        if (const auto* effect = dynamic_cast<const EffectCall*>(handle.value.get())) choices_.effects.push_back({{effect->id, sorted(effect->settings)}, true});
   } else if (id == "register.landmarks") {
     hasRegistration_ = true;
     choices_.usesIcp = false;   // unless it is called, too
@@ -42,7 +50,7 @@ void ScriptCalls::starting(const std::string& id, const Settings& settings, cons
 }
 
 Choices ScriptCalls::choices(const Choices& present) const {
-  if (!hasModel_ || !hasPlan_ || !hasSolve_)
+  if (!hasPrediction())
     throw Error("the script makes no prediction that a window could show: it needs a model, a planner and a solver")
         .advise("Run it by `pectora run`, and open the folder that it writes");
   Choices made = choices_;

@@ -15,6 +15,8 @@ class ScriptCalls {
   void starting(const std::string& id, const Settings& settings, const Runner::PortInputs& inputs);
   /// Whether the script loads a patient; if not, it may be a preset.
   bool hasPatient() const { return choices_.source != Source::none; }
+  /// Whether it has come to a solver, so that there are choices.
+  bool hasPrediction() const { return hasPatient() && hasModel_ && hasPlan_ && hasSolve_; }
   /// The choices that lead to the same prediction and comparison. What the script did not call is as in `present`. Throws Error if
   /// it solved nothing, or for a chest that did not come from a CT by way of this window's steps.
   Choices choices(const Choices& present) const;

@@ -165,13 +165,17 @@ TEST(Pipeline, OpensTheScriptThatTheWindowShowsAsWhatTheWindowShowed) {
   s.choices.effects.push_back({{"effect.volume"}, true});
   s.choices.registration = "similarity";
   s.choices.usesIcp = false;
-  s.choices.ctLandmarks.points = {{"neck", {0, -90, 200}}, {"navel", {0, -100, -150}}, {"nipple_left", {100, -90, 50}}};
-  s.choices.scanLandmarks.points = {{"neck", {1, -90, 210}}, {"navel", {2, -100, -140}}, {"nipple_left", {103, -90, 60}}};
+  // As if they had been placed by hand, a millimetre beside the phantom's own.
+  const auto own = s.after(s.choices);
+  s.choices.ctLandmarks.points = Results::as<Landmarks>(own->phantomCtLandmarks)->points;
+  s.choices.scanLandmarks.points = Results::as<Landmarks>(own->phantomScanLandmarks)->points;
+  s.choices.ctLandmarks.points[0].position.x += 1;
   const std::filesystem::path folder = freshFolder("script");
   std::ofstream(folder / "session.lua") << scriptOf(s.choices);
   Choices opened = initialChoices({"solver.verlet"});
   s.worker.run("script", [&](Pipeline& pipeline) { opened = pipeline.openedScript(opened, (folder / "session.lua").string()); });
   s.wait();
+  for (const LogLine& line : s.worker.takeLog()) EXPECT_NE(line.kind, LogLine::Kind::error) << line.text;
   EXPECT_EQ(firstDifference(opened, s.choices), Step::nothing) << scriptOf(opened);
   EXPECT_FALSE(std::filesystem::exists("result")) << "nothing is written unasked";
   // And the prediction is found again where the script left it.

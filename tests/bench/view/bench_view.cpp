@@ -104,6 +104,6 @@ void stiffnessMoves(benchmark::State& state) { follow(state, false); }
 }  // namespace
 
 BENCHMARK(drawing)->ArgName("samples")->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(barMoves)->ArgName("hundredths_mm")->Arg(1200)->Arg(480)->Arg(215)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
-BENCHMARK(stiffnessMoves)->ArgName("hundredths_mm")->Arg(1200)->Arg(480)->Arg(215)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
+BENCHMARK(barMoves)->ArgName("hundredths_mm")->Arg(1000)->Arg(400)->Arg(177)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
+BENCHMARK(stiffnessMoves)->ArgName("hundredths_mm")->Arg(1000)->Arg(400)->Arg(177)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
 BENCHMARK_MAIN();
