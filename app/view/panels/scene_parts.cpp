@@ -38,6 +38,7 @@ void SceneParts::updateSkin(const Context& context) {
   const Mesh *before = Results::as<Mesh>(r.before), *kept = Results::as<Mesh>(r.after);
   if (scene || (before && kept)) {
     const std::vector<Vec3>& rest = scene ? scene->outer : before->points;
+    skinAtRest_ = rest;
     const std::vector<Vec3>& after = !scene ? kept->points : r.skin && r.skin->size() == rest.size() ? *r.skin : rest;
     skin_.triangles = scene ? layerMesh(scene->rows, scene->columns, {}).triangles : before->triangles;
     skin_.points.resize(rest.size());
@@ -189,10 +190,11 @@ std::vector<Item> SceneParts::items(const Context& context) const {
 }
 
 std::pair<Vec3, double> SceneParts::bounds() const {
-  const Surface& s = skin_.points.empty() ? sternumAtRest_ : skin_;
-  if (s.points.empty()) return {{}, 300};
-  Vec3 low = s.points.front(), high = low;
-  for (const Vec3& p : s.points)
+  // At rest, so that where the camera stands does not depend on how far the solver had come when it was set.
+  const std::vector<Vec3>& points = skin_.points.empty() ? sternumAtRest_.points : skinAtRest_;
+  if (points.empty()) return {{}, 300};
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points)
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
   return {(low + high) * 0.5, 0.5 * norm(Vec3{high.x - low.x, 0.3 * (high.y - low.y), high.z - low.z})};
 }
