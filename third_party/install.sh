@@ -15,8 +15,8 @@ packages=(
   libcairo2-dev fonts-dejavu-core gnuplot-nox
   # The window
   libimgui-dev libglfw3-dev libepoxy-dev libegl1 libgl1-mesa-dri
-  # Tests; CalculiX to compare the solid wall with, valgrind to count instructions
-  libgtest-dev calculix-ccx valgrind
+  # Tests; CalculiX to compare the solid wall with, valgrind to count instructions, a display and a hand for the window
+  libgtest-dev calculix-ccx valgrind xvfb xdotool
 )
 
 missing=()

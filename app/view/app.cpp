@@ -12,8 +12,8 @@ namespace {
 
 constexpr ImGuiWindowFlags kPanelFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
-constexpr const char* kTabs[] = {"Patient", "Anatomy", "Bar", "Tissue", "Compare", "Script"};
-constexpr const char* kTabMarks[] = {"tab.patient", "tab.anatomy", "tab.bar", "tab.tissue", "tab.compare", "tab.script"};
+constexpr const char* kTabNames[kTabs] = {"Patient", "Anatomy", "Bar", "Tissue", "Compare", "Accuracy", "Script"};
+constexpr const char* kTabMarks[kTabs] = {"tab.patient", "tab.anatomy", "tab.bar", "tab.tissue", "tab.compare", "tab.accuracy", "tab.script"};
 
 }  // namespace
 
@@ -126,11 +126,11 @@ void App::topBar(float width, float) {
   ImGui::PopFont();
   ImGui::SameLine(0, 28 * s);
   const bool isOpen = context_.choices.source != Source::none;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < kTabs; ++i) {
     const bool isHere = int(context_.tab) == i;
     ImGui::PushStyleColor(ImGuiCol_Button, isHere ? ImVec4{0.20f, 0.34f, 0.37f, 1} : ImVec4{0, 0, 0, 0});
     ImGui::PushStyleColor(ImGuiCol_Text, isHere ? ImVec4{1, 1, 1, 1} : isOpen || i == 0 ? ImVec4{0.78f, 0.82f, 0.86f, 1} : kMuted);
-    if (button(kTabs[i], kTabMarks[i])) context_.tab = Tab(i);
+    if (button(kTabNames[i], kTabMarks[i])) context_.tab = Tab(i);
     ImGui::PopStyleColor(2);
     ImGui::SameLine(0, 3 * s);
   }
@@ -146,7 +146,7 @@ void App::topBar(float width, float) {
   if (button("↷", "redo")) context_.redo();
   ImGui::EndDisabled();
   hint("Redo (Ctrl+Y)");
-  std::string what = context_.choices.source == Source::phantom ? "Phantom" : isOpen ? "CT" : "";
+  std::string what = context_.choices.source == Source::phantom ? "Phantom" : context_.choices.source == Source::result ? "Result" : isOpen ? "CT" : "";
   if (const Volume* volume = context_.results->volume(); volume && isOpen)
     what += fmt::format(" · {} × {} × {}", volume->grid.size[0], volume->grid.size[1], volume->grid.size[2]);
   ImGui::SameLine(width - ImGui::CalcTextSize(what.c_str()).x - 14 * s);
@@ -160,6 +160,7 @@ void App::leftColumn(float, float) {
     case Tab::bar: barControls(context_); break;
     case Tab::tissue: tissueControls(context_); break;
     case Tab::compare: compare_.controls(context_); break;
+    case Tab::accuracy: accuracyControls(context_); break;
     case Tab::script: script_.controls(context_); break;
   }
 }
@@ -183,6 +184,8 @@ void App::center(float width, float height) {
     script_.draw(context_, width, height);
   } else if (!isOpen) {
     opening(width, height);
+  } else if (context_.tab == Tab::accuracy) {
+    accuracyPicture(context_, width, height);
   } else if (context_.tab == Tab::anatomy && context_.results->volume()) {
     slices_.draw(context_, width, height);
   } else if (context_.tab == Tab::compare && compare_.isPlacing()) {
@@ -205,13 +208,13 @@ void App::opening(float width, float height) {
   ImGui::SetCursorPosY(height * 0.30f);
   line(fonts().title, "The chest after a Nuss operation", {0.92f, 0.94f, 0.96f, 1});
   ImGui::Dummy({0, 6 * s});
-  line(fonts().text, "Drop a folder of DICOM files here, or open one on the left.", kMuted);
+  line(fonts().text, "Drop a folder of DICOM files, a script or a result folder here, or open one on the left.", kMuted);
   line(fonts().text, "No CT at hand? Make a phantom patient.", kMuted);
   ImGui::Dummy({0, 10 * s});
   ImGui::SetCursorPosX((width - 180 * s) / 2);
   if (button("Make a phantom", "opening.phantom", {180 * s, 34 * s})) context_.openPhantom();
   ImGui::Dummy({0, 34 * s});
-  line(fonts().text, "Patient → Anatomy → Bar → Tissue → Compare → Script", {0.78f, 0.82f, 0.86f, 1});
+  line(fonts().text, "Patient → Anatomy → Bar → Tissue → Compare → Accuracy → Script", {0.78f, 0.82f, 0.86f, 1});
   line(fonts().text, "See what was found, move the bar, tune the springs, measure against a scan; all of it is a script.", kMuted);
 }
 

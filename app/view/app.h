@@ -56,7 +56,7 @@ class App {
     SkinLook skin = SkinLook::natural;
     bool hasBones = true, hasScan = false;
   };
-  std::array<TabLook, 6> looks_{{{}, {}, {SkinLook::glass}, {SkinLook::displacement}, {SkinLook::hidden, false, true}, {}}};
+  std::array<TabLook, kTabs> looks_{{{}, {}, {SkinLook::glass}, {SkinLook::displacement}, {SkinLook::hidden, false, true}, {}, {}}};
   Tab lastTab_ = Tab::patient;
 };
 

@@ -37,6 +37,7 @@ void Context::refresh() {
     inbox_->springs.reset();
     if (inbox_->worths) worths = std::move(*inbox_->worths);
     inbox_->worths.reset();
+    if (inbox_->study) study = std::exchange(inbox_->study, std::nullopt);
     if (inbox_->choices) {
       choices = std::move(*inbox_->choices);
       inbox_->choices.reset();
@@ -45,6 +46,7 @@ void Context::refresh() {
   }
   // A picked point keeps its springs up to date; another scene has other points.
   if (results->scene.value != old->scene.value) worths.clear();
+  if (results->scene.value != old->scene.value || results->plan.value != old->plan.value) study.reset();
   if (picked && results->motion.value != old->motion.value) {
     const Motion* motion = results->motionValue();
     if (!motion || std::size_t(picked->point) >= motion->outer.size()) picked.reset();
@@ -80,10 +82,10 @@ void Context::open(const std::string& given) {
   }
   recent.add(path);
   if (ending == ".lua") {
-    worker_.run("preset", [inbox = inbox_, now = choices, path](Pipeline& pipeline) {
-      Choices preset = pipeline.withPreset(now, path);
+    worker_.run("script", [inbox = inbox_, now = choices, path](Pipeline& pipeline) {
+      Choices made = pipeline.openedScript(now, path);
       const std::lock_guard lock(inbox->mutex);
-      inbox->choices = std::move(preset);
+      inbox->choices = std::move(made);
     });
     return;
   }
@@ -95,15 +97,16 @@ void Context::open(const std::string& given) {
     changed(false);
     return;
   }
-  choices.source = Source::dicom;
-  choices.loader = {"loader.dicom", {{"path", path}}};
+  const bool isResult = fs::exists(path + "/before.ply") && fs::exists(path + "/after.ply");
+  choices.source = isResult ? Source::result : Source::dicom;
+  choices.loader = {isResult ? "" : "loader.dicom", {{"path", path}}};
   choices.ctLandmarks = {};
   picked.reset();
   changed(false);
 }
 
 void Context::openPhantom() {
-  if (choices.source != Source::phantom) choices.loader = {"loader.phantom", {{"matrix", 256.0}}};
+  if (choices.loader.id != "loader.phantom") choices.loader = {"loader.phantom", {{"matrix", 256.0}}};
   choices.source = Source::phantom;
   choices.scanPath.clear();
   choices.ctLandmarks = choices.scanLandmarks = {};
@@ -117,6 +120,14 @@ void Context::pickPoint(int point) {
     auto springs = pipeline.springsAt(point);
     const std::lock_guard lock(inbox->mutex);
     inbox->springs = std::move(springs);
+  });
+}
+
+void Context::studyScene() {
+  worker_.run("studying accuracy", [this, inbox = inbox_](Pipeline& pipeline) {
+    auto made = pipeline.study([this](double fraction, const std::string& what) { worker_.progress("accuracy", fraction, what); });
+    const std::lock_guard lock(inbox->mutex);
+    inbox->study = std::move(made);
   });
 }
 

@@ -11,7 +11,8 @@
 namespace pectora::view {
 
 /// The steps of the work, as tabs from left to right.
-enum class Tab { patient, anatomy, bar, tissue, compare, script };
+enum class Tab { patient, anatomy, bar, tissue, compare, accuracy, script };
+inline constexpr int kTabs = 7;
 
 enum class SkinLook { natural, glass, displacement, hidden };
 
@@ -46,6 +47,7 @@ struct Inbox {
   std::optional<std::vector<PickedSpring>> springs;
   std::optional<std::vector<EffectWorth>> worths;
   std::optional<Choices> choices;
+  std::optional<Study> study;
 };
 
 class Context {
@@ -65,6 +67,7 @@ class Context {
   std::vector<LogLine> log;
   std::optional<PickedPoint> picked;
   std::vector<EffectWorth> worths;     ///< empty: not measured for the present scene
+  std::optional<Study> study;          ///< of the present scene and plan
   std::string typedPath, typedScan, presetName = "my preset";   ///< what stands in those fields
   std::string message;                 ///< for the status line; empty: none
   std::optional<std::string> wantedPicture;   ///< path of a PNG of the next frame
@@ -75,11 +78,12 @@ class Context {
   void changed(bool isDragging);
   void undo();
   void redo();
-  /// Opens a folder of DICOM, a DICOMDIR, a surface (as the scan after the operation) or a preset, by its path.
+  /// Opens a folder of DICOM, a DICOMDIR, a surface (as the scan after the operation), a script, a preset, or a folder of results, by its path.
   void open(const std::string& path);
   void openPhantom();
   void pickPoint(int point);
   void measureEffects();
+  void studyScene();
   Worker& worker() { return worker_; }
 
  private:

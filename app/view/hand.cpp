@@ -3,6 +3,7 @@
 #include "app/view/panels/widgets.h"
 
 #include <chrono>
+#include <map>
 #include <stdexcept>
 #include <thread>
 
@@ -14,7 +15,7 @@ bool Hand::rest(double seconds) {
   int quiet = 0;
   // The worker may be between two pieces of work: it rests when it does for a while.
   while (quiet < 8) {
-    app_.frame();
+    step();
     quiet = app_.context().activity.isBusy || app_.wantsFrame() ? 0 : quiet + 1;
     std::this_thread::sleep_for(std::chrono::milliseconds(4));
     if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) return false;
@@ -23,7 +24,7 @@ bool Hand::rest(double seconds) {
 }
 
 void Hand::frames(int count) {
-  for (int i = 0; i < count; ++i) app_.frame();
+  for (int i = 0; i < count; ++i) step();
 }
 
 bool Hand::sees(const std::string& name) const { return markedItems().contains(name); }
@@ -55,22 +56,24 @@ void Hand::drag(const std::string& name, ImVec2 from, ImVec2 to, int steps) {
 void Hand::type(const std::string& text, bool enter) {
   ImGuiIO& io = ImGui::GetIO();
   for (char c : text) io.AddInputCharacter(static_cast<unsigned char>(c));
-  app_.frame();
+  step();
   if (!enter) return;
   io.KeysDown[io.KeyMap[ImGuiKey_Enter]] = true;
-  app_.frame();
+  step();
   io.KeysDown[io.KeyMap[ImGuiKey_Enter]] = false;
-  app_.frame();
+  step();
 }
 
-void Hand::control(ImGuiKey key) {
+void Hand::control(char letter) {
+  static const std::map<char, ImGuiKey> keys{{'a', ImGuiKey_A}, {'c', ImGuiKey_C}, {'v', ImGuiKey_V}, {'x', ImGuiKey_X}, {'y', ImGuiKey_Y}, {'z', ImGuiKey_Z}};
   ImGuiIO& io = ImGui::GetIO();
+  const int key = io.KeyMap[keys.at(letter)];   // the letters that ImGui knows
   io.KeyCtrl = true;
-  io.KeysDown[io.KeyMap[key]] = true;
-  app_.frame();
+  io.KeysDown[key] = true;
+  step();
   io.KeyCtrl = false;
-  io.KeysDown[io.KeyMap[key]] = false;
-  app_.frame();
+  io.KeysDown[key] = false;
+  step();
 }
 
 void Hand::moveTo(ImVec2 at) {

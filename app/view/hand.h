@@ -7,7 +7,8 @@
 
 namespace pectora::view {
 
-/// Feeds ImGui's input of an offscreen target; every action draws the frames that it takes.
+/// Feeds ImGui's input of an offscreen target; every action draws the frames that it takes. A hand of a real window overrides what
+/// the display's own mouse and keyboard do.
 class Hand {
  public:
   explicit Hand(App& app) : app_(app) {}
@@ -22,11 +23,13 @@ class Hand {
   void click(const std::string& name, float x = 0.5f, float y = 0.5f);
   /// Presses at one place of an item, moves in steps to another, and lets go.
   void drag(const std::string& name, ImVec2 from, ImVec2 to, int steps = 12);
-  void type(const std::string& text, bool enter);
-  /// A key with Ctrl.
-  void control(ImGuiKey key);
+  virtual void type(const std::string& text, bool enter);
+  /// A letter with Ctrl: "z".
+  virtual void control(char letter);
 
  protected:
+  /// One frame.
+  virtual void step() { app_.frame(); }
   virtual void moveTo(ImVec2 at);
   virtual void press(bool isDown);
   App& app_;

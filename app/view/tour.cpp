@@ -50,6 +50,11 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   hand.click("landmarks.place");
   picture("landmarks");
   hand.click("landmarks.place");
+  hand.click("tab.accuracy");
+  hand.frames(3);
+  hand.click("study");
+  rest();
+  picture("accuracy");
   hand.click("tab.script");
   hand.click("console.line");
   hand.type("plan.haller_index, motion.status", true);

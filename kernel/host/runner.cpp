@@ -190,6 +190,7 @@ std::vector<Handle> Runner::run(const std::string& id, const Settings& settings,
     }
     applySettings(settings, describe);
     checkInputs(plugin, inputs);
+    messages_.starting(id, settings, inputs);
 
     // The record, but for what is known only afterwards.
     auto record = std::make_shared<Record>();

@@ -18,6 +18,8 @@ class Messages {
   virtual void progress(const std::string& /*stage*/, double /*fraction*/, const std::string& /*what*/) {}
   virtual void info(const std::string& /*stage*/, const std::string& /*message*/) {}
   virtual void warn(const std::string& /*stage*/, const std::string& /*message*/) {}
+  /// A stage, solver or effect call is about to be run, its settings and inputs (by port) checked. May throw Cancelled.
+  virtual void starting(const std::string& /*id*/, const Settings& /*settings*/, const std::vector<std::vector<Handle>>& /*inputs*/) {}
   /// A stage ended; `cached` says that the result came from the cache.
   virtual void finished(const Record& /*record*/, bool /*cached*/) {}
   /// What it returned, one handle an output.

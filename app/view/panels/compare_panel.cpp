@@ -14,7 +14,7 @@ namespace pectora::view {
 namespace {
 
 constexpr const char* kLandmarks[] = {"neck", "navel", "nipple_right", "nipple_left"};
-constexpr const char* kSides[] = {"Skin in the CT", "Scan after the operation"};
+constexpr const char* kSides[] = {"Skin before the operation", "Scan after the operation"};
 
 // The whole skin that was found, not only what the model covers.
 Surface skinOf(const Anatomy& anatomy) {
@@ -83,7 +83,7 @@ const Landmarks& ComparePanel::landmarks(const Context& context, int side) const
 
 void ComparePanel::load(Context& context) {
   const Results& r = *context.results;
-  const std::shared_ptr<const Value> values[] = {r.anatomy.value, r.scan.value};
+  const std::shared_ptr<const Value> values[] = {r.before.value ? r.before.value : r.anatomy.value, r.scan.value};
   for (int side = 0; side < 2; ++side) {
     OneSide& s = sides_[side];
     const std::shared_ptr<const void> map = side == 1 ? r.byLandmarks.value : nullptr;
@@ -104,7 +104,7 @@ void ComparePanel::show(Context& context, OneSide& s, const Value* value) {
   if (mesh) s.shown.points = mesh->points, s.shown.triangles = mesh->triangles;
   if (cloud) s.shown.points = cloud->points, s.shown.normals = cloud->normals;
   // A scan stands as the registration puts it; before there is one, with its longest way upright.
-  if ((mesh || cloud) && !s.shown.points.empty()) {
+  if (&s == &sides_[1] && !s.shown.points.empty()) {
     const auto* registration = Results::as<Registration>(context.results->byLandmarks);
     s.toShown = registration ? registration->map : upright(s.shown.points, isTurned_);
     s.fromShown = inverse(s.toShown);
@@ -158,7 +158,11 @@ void ComparePanel::drawSide(Context& context, int side, ImVec2 size) {
   list->AddText({s.viewport.low().x + 0.6f * em, s.viewport.low().y + 0.4f * em}, IM_COL32(225, 230, 235, 255), kSides[side]);
   for (const Landmark& l : marks.points) {
     ImVec2 place;
-    if (s.viewport.screen(s.toShown(l.position), place)) list->AddText({place.x + 0.6f * em, place.y - 0.5f * em}, IM_COL32(255, 190, 110, 255), readable(l.name).c_str());
+    if (!s.viewport.screen(s.toShown(l.position), place)) continue;
+    const std::string name = readable(l.name);
+    const ImVec2 box = ImGui::CalcTextSize(name.c_str()), at{std::min(place.x + 0.7f * em, s.viewport.low().x + s.viewport.size().x - box.x - 0.4f * em), place.y - 0.5f * em};
+    list->AddRectFilled({at.x - 0.3f * em, at.y - 0.1f * em}, {at.x + box.x + 0.3f * em, at.y + box.y + 0.1f * em}, IM_COL32(24, 28, 33, 210), 3);
+    list->AddText(at, IM_COL32(255, 190, 110, 255), name.c_str());
   }
   if (s.shown.points.empty()) list->AddText({s.viewport.low().x + em, s.viewport.low().y + 3 * em}, IM_COL32(170, 178, 186, 255), "Nothing here yet");
 }
@@ -229,19 +233,35 @@ void ComparePanel::table(const Comparison& c, float scale) {
       ImGui::TableNextColumn();
       ImGui::TextColored(kMuted, "%s", head);
     }
-    const auto line = [](const char* name, const DistanceStatistics& s) {
+    const auto line = [](const char* name, const DistanceStatistics& s, const ImVec4* color) {
       if (s.count == 0) return;
       ImGui::TableNextColumn();
+      if (color) ImGui::PushStyleColor(ImGuiCol_Text, *color);
       ImGui::TextUnformatted(name);
       for (const std::string& text : {fmt::format("{:+.2f}", s.mean), fmt::format("{:.2f}", s.sd), fmt::format("{:.2f}", s.rms)}) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(text.c_str());
       }
+      if (color) ImGui::PopStyleColor();
     };
-    line("Overlap", c.overlap);
-    line("Pit", c.pit);
-    line("Pit, unchanged", c.baselinePit);
+    // Each region, and below it what the prediction must beat there.
+    const auto region = [&](const std::string& name, const DistanceStatistics& s, const DistanceStatistics& unchanged, const DistanceStatistics& copied) {
+      line(name.c_str(), s, nullptr);
+      line("  unchanged", unchanged, &kMuted);
+      line("  bone's copy", copied, &kMuted);
+    };
+    region("Overlap", c.overlap, c.baselineOverlap, c.copiedOverlap);
+    region("Pit", c.pit, c.baselinePit, c.copiedPit);
+    for (const ComparedRegion& r : c.regions) region(readable(r.name), r.distances, r.unchanged, r.copied);
     ImGui::EndTable();
+  }
+  for (const ComparedRegion& r : c.regions) {
+    if (r.distances.count == 0 || !std::isfinite(r.skill())) continue;
+    row(("Skill, " + r.name).c_str(), fmt::format("{:.2f}", r.skill()));
+    hint("1: as the scan; 0: no better than the unchanged chest");
+    if (!std::isfinite(r.skillAgainstCopy())) continue;
+    row(("Against bone's copy, " + r.name).c_str(), fmt::format("{:.2f}", r.skillAgainstCopy()));
+    hint("0: no better than skin that is moved as the bones behind it");
   }
   // The histogram, with zero marked and each bar in the colour of the map.
   const Histogram& h = c.histogram;

@@ -65,12 +65,30 @@ void figuresPanel(Context& context) {
     }
   }
 
+  // Of a result folder there are its skins.
+  const Mesh *before = Results::as<Mesh>(r.before), *after = Results::as<Mesh>(r.after);
+  if (before && after) {
+    heading("A result folder");
+    double most = 0;
+    for (std::size_t i = 0; i < before->points.size(); ++i) most = std::max(most, distance(before->points[i], after->points[i]));
+    row("Greatest movement", fmt::format("{:.1f} mm", most));
+    row("Skin points", std::to_string(before->points.size()));
+    note("To move the bar, open the script that made it.");
+  }
+
   if (const Motion* motion = r.motionValue()) {
     heading("Predicted skin");
     const bool isGood = motion->status == SolveStatus::converged;
     row("Solver", std::string(statusName(motion->status)), r.isPreview ? &kMuted : isGood ? &kGood : &kBad);
     if (!motion->message.empty()) note(motion->message);
     if (const double* moved = factOf(motion->facts(), "greatest_skin_displacement")) row("Greatest movement", fmt::format("{:.1f} mm", *moved));
+    if (r.planValue()) {
+      const bool isLess = motion->lift < r.planValue()->lift - 0.05;
+      row("Lift reached", isLess ? fmt::format("{:.1f} of {:.1f} mm", motion->lift, r.planValue()->lift) : fmt::format("{:.1f} mm", motion->lift), isLess ? &kWarm : nullptr);
+      hint("How far the bar brings the deepest point of the sternum: less than planned where effect.bar_compliance lets it bend");
+    }
+    row("Force on the bar", std::isfinite(motion->barForce) ? fmt::format("{:.0f} N", motion->barForce) : "–");
+    hint("Of the chest on the bar; effect.cartilage_bending knows it");
     row("Residual", fmt::format("{:.1e}", motion->relativeResidual));
     row("Iterations", std::to_string(motion->iterations));
     if (motion->invertedPrisms > 0) row("Cells inside out", std::to_string(motion->invertedPrisms), &kBad);
@@ -119,7 +137,7 @@ void statusLine(Context& context) {
     ImGui::TextColored(kBad, "%s", text.substr(0, text.find('\n')).c_str());
     hint(text);
   } else {
-    ImGui::TextColored(kMuted, "%s", context.results->motion.value ? "Ready" : context.results->ct.value ? "Not finished" : "");
+    ImGui::TextColored(kMuted, "%s", context.results->motion.value || context.results->after.value ? "Ready" : context.results->ct.value ? "Not finished" : "");
     if (context.results->ct.value && !context.results->motion.value && !activity.isBusy) {
       ImGui::SameLine();
       if (button("Go on", "resume")) context.changed(false);

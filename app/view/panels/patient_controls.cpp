@@ -7,13 +7,13 @@ namespace pectora::view {
 
 void patientControls(Context& context) {
   std::string& path = context.typedPath;
-  heading("Open a CT");
+  heading("Open");
   ImGui::SetNextItemWidth(-70 * context.scale);
-  const bool isEntered = textField("##path", "Folder of DICOM files", path, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool isEntered = textField("##path", "Folder, script or scan", path, ImGuiInputTextFlags_EnterReturnsTrue);
   mark("open.path");
   ImGui::SameLine(0, 6 * context.scale);
   if ((button("Open", "open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);
-  note("Or drop a folder, a scan or a preset on the window.");
+  note("A folder of DICOM files or of results, a script, a preset, or a scan; or drop it on the window.");
 
   if (!context.recent.paths().empty()) {
     heading("Recent");

@@ -38,7 +38,7 @@ void ScenePanel::toolbar(Context& context) {
   hint("Show all of it. Drag turns, right drag moves, the wheel zooms, a click tells about a point.");
 
   ImGui::SameLine(0, 16 * context.scale);
-  ImGui::SetNextItemWidth(118 * context.scale);
+  ImGui::SetNextItemWidth(134 * context.scale);
   static constexpr const char* kLooks[] = {"Skin", "Glass skin", "Displacement", "No skin"};
   if (ImGui::BeginCombo("##skin", kLooks[int(o.skin)])) {
     for (int i = 0; i < 4; ++i) {
@@ -96,7 +96,7 @@ void ScenePanel::draw(Context& context, float width, float height) {
   setClip(context);
   parts_.update(context);
   // A new patient is shown whole, from the front and a little from above and the left.
-  const std::shared_ptr<const void> scene = context.results->cage.value;
+  const std::shared_ptr<const void> scene = context.results->after.value ? context.results->after.value : context.results->cage.value;
   if (scene && framed_ != scene && !parts_.skin().points.empty()) {
     if (!framed_) viewport_.camera.yaw = 0.45, viewport_.camera.pitch = 0.18;
     const auto [center, radius] = parts_.bounds();

@@ -30,14 +30,17 @@ void SceneParts::updateSkin(const Context& context) {
   const Results& r = *context.results;
   const Scene* scene = r.sceneValue();
   const float part = context.scene.part;
-  if (skinOf_ == r.skin && sceneOf_ == r.scene.value && skinPart_ == part) return;
-  skinOf_ = r.skin, sceneOf_ = r.scene.value, skinPart_ = part;
+  const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value;
+  if (skinOf_ == r.skin && sceneOf_ == made && skinPart_ == part) return;
+  skinOf_ = r.skin, sceneOf_ = made, skinPart_ = part;
   ++version_;
   skin_ = {};
-  if (scene) {
-    const std::vector<Vec3>& rest = scene->outer;
-    const std::vector<Vec3>& after = r.skin && r.skin->size() == rest.size() ? *r.skin : rest;
-    skin_.triangles = layerMesh(scene->rows, scene->columns, {}).triangles;
+  const Mesh *before = Results::as<Mesh>(r.before), *kept = Results::as<Mesh>(r.after);
+  if (scene || (before && kept)) {
+    const std::vector<Vec3>& rest = scene ? scene->outer : before->points;
+    skinAtRest_ = rest;
+    const std::vector<Vec3>& after = !scene ? kept->points : r.skin && r.skin->size() == rest.size() ? *r.skin : rest;
+    skin_.triangles = scene ? layerMesh(scene->rows, scene->columns, {}).triangles : before->triangles;
     skin_.points.resize(rest.size());
     skin_.values.resize(rest.size());
     for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -67,9 +70,10 @@ void SceneParts::updateBones(const Context& context) {
     movedOf_ = nullptr;
     movedPart_ = -1;
   }
-  if (movedOf_ == r.plan.value && movedPart_ == context.scene.part) return;
+  const std::shared_ptr<const void> moved = r.barMesh.value ? r.barMesh.value : r.plan.value;
+  if (movedOf_ == moved && movedPart_ == context.scene.part) return;
   // Between live plans nothing is drawn at rest: the old plan stays until there is a new one.
-  movedOf_ = r.plan.value, movedPart_ = context.scene.part;
+  movedOf_ = moved, movedPart_ = context.scene.part;
   ++version_;
   Surface cartilages, sternum = sternumAtRest_, bar;
   barHandle_ = {};
@@ -92,6 +96,10 @@ void SceneParts::updateBones(const Context& context) {
     for (Vec3& n : sternum.normals) n = motion.rotate(n);
     bar = sweptBar(plan->bar.centerline, plan->bar.width, plan->bar.height);
     barHandle_ = tube(plan->bar.centerline, 0.8 * plan->bar.width, 6);
+  }
+  if (const Mesh* kept = Results::as<Mesh>(r.barMesh)) {
+    bar.points = kept->points, bar.triangles = kept->triangles;
+    bar.computeNormals();
   }
   gpuCartilages_.upload(cartilages);
   gpuSternum_.upload(sternum);
@@ -182,10 +190,11 @@ std::vector<Item> SceneParts::items(const Context& context) const {
 }
 
 std::pair<Vec3, double> SceneParts::bounds() const {
-  const Surface& s = skin_.points.empty() ? sternumAtRest_ : skin_;
-  if (s.points.empty()) return {{}, 300};
-  Vec3 low = s.points.front(), high = low;
-  for (const Vec3& p : s.points)
+  // At rest, so that where the camera stands does not depend on how far the solver had come when it was set.
+  const std::vector<Vec3>& points = skin_.points.empty() ? sternumAtRest_.points : skinAtRest_;
+  if (points.empty()) return {{}, 300};
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points)
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
   return {(low + high) * 0.5, 0.5 * norm(Vec3{high.x - low.x, 0.3 * (high.y - low.y), high.z - low.z})};
 }

@@ -33,6 +33,7 @@ class SceneParts {
 
   Surface skin_, barHandle_, sternumAtRest_;
   GpuSurface gpuSkin_, gpuRibs_, gpuCartilages_, gpuSternum_, gpuBar_, gpuScan_, gpuSprings_, gpuPicked_;
+  std::vector<Vec3> skinAtRest_;
   double displacementLimit_ = 1, distanceLimit_ = 1;
   bool hasDistance_ = false;
   std::uint64_t version_ = 0;

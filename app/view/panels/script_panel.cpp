@@ -58,11 +58,13 @@ void ScriptPanel::console(Context& context, float height) {
   const float below = ImGui::GetFrameHeightWithSpacing();
   ImGui::PushFont(fonts().mono);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, {0.09f, 0.10f, 0.115f, 1});
-  ImGui::BeginChild("log", {0, height - below}, false, ImGuiWindowFlags_HorizontalScrollbar);
+  ImGui::BeginChild("log", {0, height - below});
   ImGui::Indent(6 * context.scale);
   for (const LogLine& entry : context.log) {
     static const ImVec4 colors[] = {kMuted, kWarm, kBad, {0.90f, 0.92f, 0.94f, 1}, kAccent};
-    ImGui::TextColored(colors[int(entry.kind)], "%s", entry.text.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, colors[int(entry.kind)]);
+    ImGui::TextWrapped("%s", entry.text.c_str());
+    ImGui::PopStyleColor();
   }
   if (shownLines_ != context.log.size()) ImGui::SetScrollHereY(1);
   shownLines_ = context.log.size();

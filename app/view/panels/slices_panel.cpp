@@ -245,7 +245,9 @@ void SlicesPanel::controls(Context& context) {
     heading("Figures");
     for (const Fact& fact : anatomy->facts()) {
       const double* number = std::get_if<double>(&fact.value);
-      if (number) row(readable(fact.name).c_str(), figure(*number) + (fact.unit.empty() ? "" : " " + fact.unit));
+      if (!number) continue;
+      const bool isCount = fact.unit.empty() && *number == std::round(*number);
+      row(readable(fact.name).c_str(), (isCount ? std::to_string(int(*number)) : figure(*number)) + (fact.unit.empty() ? "" : " " + fact.unit));
     }
   }
 }

@@ -11,14 +11,17 @@
 namespace pectora::view {
 namespace {
 
+std::string shortName(const std::string& id) { return id.substr(id.find('.') + 1); }
+
+// "effect.j_curve" is shown as "J curve".
 void effectControls(Context& context, EffectChoice& effect) {
-  const std::string name = "effect." + effect.plugin.id.substr(effect.plugin.id.find('.') + 1);
+  const std::string name = "effect." + shortName(effect.plugin.id);
   ImGui::PushID(effect.plugin.id.c_str());
   if (ImGui::Checkbox("##on", &effect.isOn)) context.changed(false);
   mark(name);
   hint("Whether the scene calls this effect");
   ImGui::SameLine();
-  const bool isOpen = ImGui::TreeNodeEx(readable(effect.plugin.id.substr(effect.plugin.id.find('.') + 1)).c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
+  const bool isOpen = ImGui::TreeNodeEx(readable(shortName(effect.plugin.id)).c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
   mark(name + ".open");
   hint(context.catalog.summary(effect.plugin.id));
   // What it is worth, at the right.
@@ -43,6 +46,54 @@ void effectControls(Context& context, EffectChoice& effect) {
   ImGui::PopID();
 }
 
+// One that the scene does not know yet: a tick takes it in.
+void otherEffect(Context& context, const std::string& id) {
+  bool isOn = false;
+  ImGui::PushID(id.c_str());
+  if (ImGui::Checkbox(readable(shortName(id)).c_str(), &isOn)) {
+    context.choices.effects.push_back({{id}, true});
+    context.changed(false);
+  }
+  mark("effect." + shortName(id));
+  if (ImGui::IsItemHovered()) hint(context.catalog.summary(id));
+  ImGui::PopID();
+}
+
+// A lattice has springs through the wall, a solid its tissue instead.
+void takeModel(Context& context, const std::string& id) {
+  Choices& choices = context.choices;
+  const bool isSolid = id == "model.volume_mesh";
+  choices.model.id = id;
+  std::erase_if(choices.model.settings, [&](const auto& setting) {
+    const auto& known = context.catalog.parameters(id);
+    return std::none_of(known.begin(), known.end(), [&](const Parameter& p) { return p.name == setting.first; });
+  });
+  for (EffectChoice& effect : choices.effects) {
+    if (effect.plugin.id == "effect.direct" || effect.plugin.id == "effect.cross") effect.isOn = !isSolid;
+    if (effect.plugin.id == "effect.tissue") effect.isOn = isSolid;
+  }
+  const bool hasTissue = std::any_of(choices.effects.begin(), choices.effects.end(), [](const EffectChoice& e) { return e.plugin.id == "effect.tissue"; });
+  if (isSolid && !hasTissue) choices.effects.push_back({{"effect.tissue"}, true});
+}
+
+// A list of the plugins of one stage, or of those that take an input. Returns what was chosen, or nothing.
+std::optional<std::string> pluginList(Context& context, const std::string& stage, const std::string& present, const std::string& input = "") {
+  std::optional<std::string> chosen;
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo(("##" + stage).c_str(), present.c_str())) {
+    for (const std::string& id : context.catalog.ids(stage)) {
+      if (!input.empty() && !context.catalog.takes(id, input)) continue;
+      if (ImGui::Selectable(id.c_str(), id == present) && id != present) chosen = id;
+      mark(id);
+      hint(context.catalog.summary(id));
+    }
+    ImGui::EndCombo();
+  } else {
+    mark(stage);
+  }
+  return chosen;
+}
+
 void presetControls(Context& context) {
   namespace fs = std::filesystem;
   std::string& name = context.presetName;
@@ -60,6 +111,8 @@ void presetControls(Context& context) {
   }
   ImGui::SameLine(0, 6 * context.scale);
   if (button("Load…", "preset.load", {-1, 0})) ImGui::OpenPopup("presets");
+  if (button("Copy as Lua", "preset.copy", {-1, 0})) ImGui::SetClipboardText(presetOf(context.choices).c_str());
+  hint("Effects, model, planner and solver with what was changed, as in a saved preset");
   if (!ImGui::BeginPopup("presets")) return;
   bool hasAny = false;
   std::error_code error;
@@ -78,37 +131,27 @@ void presetControls(Context& context) {
 void tissueControls(Context& context) {
   heading("Effects of this scene");
   for (EffectChoice& effect : context.choices.effects) effectControls(context, effect);
-  // Others that there are.
-  if (ImGui::BeginCombo("##more", "Add an effect…")) {
-    for (const std::string& id : context.catalog.ids("effect")) {
-      const bool isKnown = std::any_of(context.choices.effects.begin(), context.choices.effects.end(), [&](const EffectChoice& e) { return e.plugin.id == id; });
-      if (isKnown || !ImGui::Selectable((id + "  " + context.catalog.summary(id)).c_str())) continue;
-      context.choices.effects.push_back({{id}, true});
-      context.changed(false);
-    }
-    ImGui::EndCombo();
-  }
+  std::vector<std::string> others = context.catalog.ids("effect");
+  std::erase_if(others, [&](const std::string& id) {
+    return std::any_of(context.choices.effects.begin(), context.choices.effects.end(), [&](const EffectChoice& e) { return e.plugin.id == id; });
+  });
+  if (!others.empty()) heading("More effects");
+  for (const std::string& id : others) otherEffect(context, id);
   ImGui::BeginDisabled(!context.results->motionValue());
   if (button("Measure what each changes", "effects.measure", {-1, 0})) context.measureEffects();
   ImGui::EndDisabled();
 
   heading("Model");
+  if (const auto id = pluginList(context, "model", context.choices.model.id, "cage")) {
+    takeModel(context, *id);
+    context.changed(false);
+  }
   parameterControls(context, context.choices.model, "model");
 
   heading("Solver");
-  ImGui::SetNextItemWidth(-1);
-  if (ImGui::BeginCombo("##solver", context.choices.solver.id.c_str())) {
-    for (const std::string& id : context.catalog.ids("solver")) {
-      if (ImGui::Selectable(id.c_str(), id == context.choices.solver.id) && id != context.choices.solver.id) {
-        context.choices.solver = {id};
-        context.changed(false);
-      }
-      mark("solver." + id);
-      hint(context.catalog.summary(id));
-    }
-    ImGui::EndCombo();
-  } else {
-    mark("solver");
+  if (const auto id = pluginList(context, "solver", context.choices.solver.id)) {
+    context.choices.solver = {*id};
+    context.changed(false);
   }
   parameterControls(context, context.choices.solver, "solver");
   presetControls(context);

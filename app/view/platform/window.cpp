@@ -38,12 +38,17 @@ class Window final : public Target {
       auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
       dropped.insert(dropped.end(), paths, paths + count);
     });
-    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+      if (key == GLFW_KEY_Q && action == GLFW_PRESS && (modifiers & GLFW_MOD_CONTROL)) glfwSetWindowShouldClose(window, GLFW_TRUE);
+    });
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);   // calls the one above, too
     ImGui_ImplOpenGL3_Init("#version 330 core");
+    frame_ = std::make_unique<Frame>();
   }
   ~Window() override {
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
+    frame_.reset();
     glfwDestroyWindow(window_);
     glfwTerminate();
   }
@@ -61,11 +66,15 @@ class Window final : public Target {
   }
   void end() override {
     const auto [width, height] = size();
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
+    // Into a frame of our own, which can be read whenever a picture is wanted: what a display has shown cannot.
+    frame_->resize(width, height, 1);
+    frame_->bind();
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_->framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glfwSwapBuffers(window_);
   }
   bool wait(double seconds) override {
@@ -76,10 +85,7 @@ class Window final : public Target {
   std::vector<std::string> takeDropped() override { return std::exchange(dropped_, {}); }
 
  protected:
-  unsigned readFramebuffer() const override {
-    glReadBuffer(GL_FRONT);
-    return 0;
-  }
+  unsigned readFramebuffer() const override { return frame_->framebuffer(); }
 
  private:
   static std::string& lastError() {
@@ -89,6 +95,7 @@ class Window final : public Target {
   GLFWwindow* window_ = nullptr;
   float scale_ = 1;
   std::vector<std::string> dropped_;
+  std::unique_ptr<Frame> frame_;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "app/view/session/catalog.h"
 
+#include <algorithm>
+
 namespace pectora::view {
 
 Catalog::Catalog(Registry& registry) : registry_(registry) {}
@@ -21,6 +23,15 @@ const std::vector<Parameter>& Catalog::parameters(const std::string& id) {
     // The run itself will say what is wrong with it.
   }
   return known_[id] = std::move(found);
+}
+
+bool Catalog::takes(const std::string& id, const std::string& input) {
+  try {
+    const std::vector<Port>& ports = runner_.ports(id);
+    return std::any_of(ports.begin(), ports.end(), [&](const Port& port) { return port.name == input; });
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 std::string Catalog::summary(const std::string& id) {

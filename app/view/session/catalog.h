@@ -14,6 +14,8 @@ class Catalog {
   std::vector<std::string> ids(const std::string& stage) const;
   /// Every parameter with its default; read once. None if the plugin cannot be opened.
   const std::vector<Parameter>& parameters(const std::string& id);
+  /// Whether it has an input of that name. False if the plugin cannot be opened.
+  bool takes(const std::string& id, const std::string& input);
   /// The one-line summary.
   std::string summary(const std::string& id);
 

@@ -22,7 +22,8 @@ struct EffectChoice {
   bool operator==(const EffectChoice&) const = default;
 };
 
-enum class Source { none, dicom, phantom };
+/// A result is a folder that a run wrote: its skins are shown and compared, but nothing can be moved.
+enum class Source { none, dicom, phantom, result };
 
 struct Choices {
   Source source = Source::none;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace pectora::view {
 namespace {
@@ -10,37 +11,8 @@ using Clock = std::chrono::steady_clock;
 
 double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-// What a live solver sees of the program.
-class LiveHost final : public Host {
- public:
-  LiveHost(std::string stage, Messages& messages, const std::atomic<bool>& cancel) : stage_(std::move(stage)), messages_(messages), cancel_(cancel) {}
-  void progress(double fraction, const std::string& what) override { messages_.progress(stage_, fraction, what); }
-  bool cancelled() const override { return cancel_.load(std::memory_order_relaxed); }
-  void warn(const std::string& message) override { messages_.warn(stage_, message); }
-  void info(const std::string& message) override { messages_.info(stage_, message); }
-  void preview(const NodeVectors& positions) override { messages_.preview(positions); }
-  std::string pluginFolder() const override { return ""; }
-
- private:
-  std::string stage_;
-  Messages& messages_;
-  const std::atomic<bool>& cancel_;
-};
-
 Settings accepting(Settings settings) {
   assign(settings, kAcceptUnconverged, true);   // the window shows the status instead
-  return settings;
-}
-
-// A skin that moves need not come nearer than is seen: about 0.01 mm. What settles is solved to the tolerance that was chosen.
-Settings loosened(Settings settings, const std::vector<Parameter>& parameters) {
-  constexpr double kLiveTolerance = 1e-4;
-  for (const Parameter& p : parameters) {
-    if (p.name != "tolerance") continue;
-    const SettingValue* given = find(settings, p.name);
-    const double wanted = std::get<double>(given ? *given : p.value);
-    assign(settings, p.name, std::max(wanted, kLiveTolerance));
-  }
   return settings;
 }
 
@@ -50,18 +22,13 @@ double largestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return largest;
 }
 
-// Whether a scene's points can begin where those of a motion ended.
-bool fits(const Motion* motion, const Scene& scene) {
-  return motion && motion->outer.size() == std::size_t(scene.points()) && motion->anchors.size() == scene.anchors.size();
-}
-
 Step next(Step step) { return Step(int(step) + 1); }
 
 }  // namespace
 
 Pipeline::Pipeline(Registry& registry, Messages& messages, std::atomic<bool>& cancel, Show show, std::function<void(const std::string&)> print)
     : registry_(registry), messages_(messages), cancel_(cancel), show_(std::move(show)), runner_(registry, messages, cancel),
-      console_(runner_, registry, cancel, ScriptOptions{{}, std::move(print)}) {}
+      live_(registry), console_(runner_, registry, cancel, ScriptOptions{{}, std::move(print)}) {}
 
 void Pipeline::show() { show_(std::make_shared<const Results>(results_)); }
 
@@ -77,7 +44,7 @@ void Pipeline::update(const Choices& wanted, Clock::time_point since) {
   if (hasFailed_ || done_.source == Source::none) return;
   // Live where the skin can go on from where it is.
   if (valid_ > Step::motion) return;
-  if (fits(results_.motionValue(), *results_.sceneValue())) solveLive();
+  if (results_.motionValue()) solveLive();
 }
 
 void Pipeline::settle() {
@@ -94,12 +61,13 @@ void Pipeline::runFrom(Step first, Step last) {
   };
   if (last == Step::plan && first <= Step::plan) results_.error.clear();
   clearFrom(Step::source, results_.ct);
+  for (Handle* handle : {&results_.before, &results_.after, &results_.barMesh}) clearFrom(Step::source, *handle);
   clearFrom(Step::source, results_.phantomScan);
   clearFrom(Step::source, results_.phantomCtLandmarks);
   clearFrom(Step::source, results_.phantomScanLandmarks);
   clearFrom(Step::anatomy, results_.anatomy);
   clearFrom(Step::cage, results_.cage);
-  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, warm_ = nullptr, results_.comparison = results_.aligned = {};
+  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, live_.forget(), results_.comparison = results_.aligned = {};
   for (Step step = first; step <= last && step < Step::nothing; step = next(step)) {
     present_ = step;
     try {
@@ -125,8 +93,13 @@ void Pipeline::runFrom(Step first, Step last) {
 void Pipeline::runStep(Step step) {
   Results& r = results_;
   if (done_.source == Source::none) return;
+  if (done_.source == Source::result && step > Step::source && step < Step::scan) return;
   switch (step) {
     case Step::source: {
+      if (done_.source == Source::result) {
+        openResult();
+        break;
+      }
       const auto outputs = run(done_.loader, Runner::PortInputs(runner_.ports(done_.loader.id).size()));
       r.ct = outputs[0];
       if (done_.source == Source::phantom) r.phantomScan = outputs[2], r.phantomCtLandmarks = outputs[3], r.phantomScanLandmarks = outputs[4];
@@ -138,7 +111,13 @@ void Pipeline::runStep(Step step) {
       std::vector<Handle> effects;
       for (const EffectChoice& effect : done_.effects)
         if (effect.isOn) effects.push_back(run(effect.plugin, {})[0]);
-      r.scene = run(done_.model, {{r.cage}, effects})[0];
+      // A lattice is made of the cage alone, a solid of the CT, too.
+      Runner::PortInputs inputs;
+      for (const Port& port : runner_.ports(done_.model.id)) {
+        const std::string name = port.name;
+        inputs.push_back(name == "effects" ? effects : name == "cage" ? std::vector<Handle>{r.cage} : std::vector<Handle>{r.ct});
+      }
+      r.scene = run(done_.model, inputs)[0];
       break;
     }
     case Step::plan: r.plan = run(done_.planner, {{r.cage}})[0]; break;
@@ -170,16 +149,18 @@ void Pipeline::runStep(Step step) {
       r.comparison = {};
       if (!r.aligned.value) break;
       // The skin before and after, as a script takes them out of the motion.
-      Handle before, after;
-      for (const auto& [name, part] : r.motion.value->parts()) {
-        if (name == "before") before = {part, r.motion.record};
-        if (name == "after") after = {part, r.motion.record};
-      }
+      Handle before = r.before, after = r.after, copied;
+      if (r.motion.value)
+        for (const auto& [name, part] : r.motion.value->parts()) {
+          if (name == "before") before = {part, r.motion.record};
+          if (name == "after") after = {part, r.motion.record};
+          if (name == "copied") copied = {part, r.motion.record};
+        }
       if (done_.usesIcp) {
         const auto outputs = runner_.run("register.icp", {}, {{r.aligned}, {before}, {after}});
         r.aligned = outputs[0], r.byIcp = outputs[1];
       }
-      r.comparison = runner_.run("comparer.surface", {{"name", std::string("scan_vs_simulated")}}, {{r.aligned}, {after}, {before}, {}})[0];
+      r.comparison = runner_.run("comparer.surface", {{"name", std::string("scan_vs_simulated")}}, {{r.aligned}, {after}, {before}, copied.value ? std::vector<Handle>{copied} : std::vector<Handle>{}})[0];
       break;
     }
     case Step::nothing: break;
@@ -187,26 +168,36 @@ void Pipeline::runStep(Step step) {
   show();
 }
 
-void Pipeline::ensureWarm() {
-  const auto scene = std::dynamic_pointer_cast<const Scene>(results_.scene.value);
-  if (warm_ && warm_->scene() == scene && warmSolver_ == done_.solver) return;
-  auto solver = registry_.open(done_.solver.id).descriptor->makeSolver();
-  applySettings(loosened(done_.solver.settings, parameters([&](Visitor& v) { solver->describe(v); })), [&](Visitor& v) { solver->describe(v); });
+// The skins and the bar that report.files wrote.
+void Pipeline::openResult() {
+  const std::string folder = std::get<std::string>(*find(done_.loader.settings, "path"));
+  const auto mesh = [&](const char* name) { return runner_.run("scan.file", {{"path", folder + "/" + name}, {"units", std::string("mm")}}, {})[0]; };
+  results_.before = mesh("before.ply");
+  results_.after = mesh("after.ply");
+  if (std::filesystem::exists(folder + "/bar.ply")) results_.barMesh = mesh("bar.ply");
+  const Mesh *before = Results::as<Mesh>(results_.before), *after = Results::as<Mesh>(results_.after);
+  if (!before || !after || before->points.size() != after->points.size())
+    throw Error("the skins before and after of this folder do not belong together").given(folder).advise("Open a folder that report.files wrote");
+}
+
+WarmSolve& Pipeline::warm() {
   LiveHost host(done_.solver.id, messages_, cancel_);
-  auto made = std::make_unique<WarmSolve>(scene, done_.solver.id, std::move(solver), registry_, host);
-  if (fits(results_.motionValue(), *scene)) made->startFrom(*results_.motionValue());
-  warm_ = std::move(made);
-  warmSolver_ = done_.solver;
-  results_.effects = warm_->compiled().effects;
+  WarmSolve& solve = live_.ready(std::dynamic_pointer_cast<const Scene>(results_.scene.value), done_.solver, results_.motionValue(), host);
+  results_.effects = solve.compiled().effects;
+  return solve;
 }
 
 void Pipeline::solveLive() {
   present_ = Step::motion;
   LiveHost host(done_.solver.id, messages_, cancel_);
   try {
-    ensureWarm();
+    WarmSolve& solve = warm();
+    if (!live_.isWarm()) {
+      present_ = Step::nothing;
+      return;
+    }
     showsWay_ = true;
-    const auto motion = warm_->solve(*results_.planValue(), host);
+    const auto motion = solve.solve(*results_.planValue(), host);
     results_.motion = {motion, nullptr};
     results_.skin = std::shared_ptr<const std::vector<Vec3>>(motion, &motion->outer);
     results_.isPreview = false;
@@ -217,7 +208,7 @@ void Pipeline::solveLive() {
     show();
   } catch (const Cancelled&) {
     // The next solve goes on from what was last seen.
-    if (lastSeen_.size() > 0) warm_->startFrom(std::move(lastSeen_));
+    if (lastSeen_.size() > 0) warm().startFrom(std::move(lastSeen_));
     lastSeen_ = {};
     results_.isLive = true;
     present_ = Step::nothing;
@@ -225,7 +216,7 @@ void Pipeline::solveLive() {
   } catch (const Error& error) {
     results_.error = error.what();
     hasFailed_ = true;
-    warm_ = nullptr;
+    live_.forget();
     show();
   }
   lastSeen_ = {};
@@ -235,7 +226,7 @@ void Pipeline::solveLive() {
 void Pipeline::solveFromRest() {
   const bool wasLive = results_.isLive && !results_.isPreview && results_.skin;
   const auto live = results_.skin;
-  ensureWarm();
+  warm();
   showsWay_ = !wasLive;   // a check of the live skin does not take it away
   const Handle motion = runner_.run(done_.solver.id, accepting(done_.solver.settings), {{results_.scene}, {results_.plan}, {}})[0];
   results_.motion = motion;
@@ -243,7 +234,7 @@ void Pipeline::solveFromRest() {
   results_.skin = std::shared_ptr<const std::vector<Vec3>>(value, &value->outer);
   results_.settled = wasLive && live->size() == value->outer.size() ? largestDistance(*live, value->outer) : -1;
   results_.isPreview = results_.isLive = false;
-  warm_->startFrom(*value);
+  live_.startFrom(*value);
 }
 
 void Pipeline::preview(const NodeVectors& positions) {
@@ -264,11 +255,14 @@ std::vector<PickedSpring> Pipeline::springsAt(int point) {
   std::vector<PickedSpring> found;
   const Motion* motion = results_.motionValue();
   if (!motion || hasFailed_) return found;
-  ensureWarm();
-  const std::size_t layer = motion->outer.size(), node = std::size_t(point);
-  if (node >= layer) return found;
-  const auto place = [&](std::size_t i) { return i < layer ? motion->outer[i] : i < 2 * layer ? motion->inner[i - layer] : motion->anchors[i - 2 * layer]; };
-  for (const auto& term : warm_->compiled().system->terms)
+  const System& system = *warm().compiled().system;
+  const std::size_t node = std::size_t(point);
+  if (node >= motion->outer.size() || motion->outer.size() != system.points()) return found;
+  const auto place = [&](std::size_t i) {
+    const std::size_t layer = i / system.points();
+    return layer < std::size_t(system.layers) ? motion->layer(int(layer))[i % system.points()] : motion->anchors.at(i - system.anchorNode(0));
+  };
+  for (const auto& term : system.terms)
     term->forEachSpring([&](const Spring& s) {
       if (s.a != node && s.b != node) return;
       const Vec3 from = place(node), to = place(s.a == node ? s.b : s.a);
@@ -282,7 +276,6 @@ std::vector<EffectWorth> Pipeline::measureEffects(const std::function<void(doubl
   std::vector<EffectWorth> worths;
   const Motion* with = results_.motionValue();
   if (!with || hasFailed_) return worths;
-  ensureWarm();
   showsWay_ = false;
   // The best of five evaluations of all forces.
   const auto cost = [](const System& system) {
@@ -295,7 +288,7 @@ std::vector<EffectWorth> Pipeline::measureEffects(const std::function<void(doubl
     }
     return best;
   };
-  const double whole = cost(*warm_->compiled().system);
+  const double whole = cost(*warm().compiled().system);
   LiveHost host(done_.solver.id, messages_, cancel_);
   for (std::size_t i = 0; i < done_.effects.size(); ++i) {
     if (!done_.effects[i].isOn) continue;
@@ -305,11 +298,11 @@ std::vector<EffectWorth> Pipeline::measureEffects(const std::function<void(doubl
     auto scene = std::make_shared<Scene>(*results_.sceneValue());
     std::erase_if(scene->effects, [&](const auto& call) { return call->id == worth.id; });
     try {
-      auto solver = registry_.open(done_.solver.id).descriptor->makeSolver();
-      applySettings(done_.solver.settings, [&](Visitor& v) { solver->describe(v); });
-      WarmSolve without(scene, done_.solver.id, std::move(solver), registry_, host);
+      WarmSolve without(scene, done_.solver.id, makeSolver(registry_, done_.solver), registry_, host);
       worth.milliseconds = std::max(0.0, whole - cost(*without.compiled().system));
-      without.startFrom(*with);
+      // A guide less, such as of a bar that gives way, and the motion is another scene's: then from rest.
+      const System& system = *without.compiled().system;
+      if (with->anchors.size() == system.rest.size() - system.freeNodes) without.startFrom(*with);
       const auto motion = without.solve(*results_.planValue(), host);
       double sum = 0;
       for (std::size_t p = 0; p < with->outer.size(); ++p) {
@@ -324,6 +317,11 @@ std::vector<EffectWorth> Pipeline::measureEffects(const std::function<void(doubl
     worths.push_back(worth);
   }
   return worths;
+}
+
+Study Pipeline::study(const std::function<void(double, const std::string&)>& progress) {
+  if (!results_.planValue() || !results_.sceneValue() || hasFailed_) throw Error("there is no scene to study yet");
+  return studyScene(std::dynamic_pointer_cast<const Scene>(results_.scene.value), *results_.planValue(), done_.solver, registry_, cancel_, progress);
 }
 
 void Pipeline::exportTo(const std::string& folder) {
@@ -346,11 +344,40 @@ void Pipeline::evaluate(const std::string& code) {
   console_.evaluate(code);
 }
 
-Choices Pipeline::withPreset(Choices choices, const std::string& path) {
+void Pipeline::starting(const std::string& id, const Settings& settings, const Runner::PortInputs& inputs) {
+  if (calls_) calls_->starting(id, settings, inputs);
+}
+
+Choices Pipeline::openedScript(const Choices& present, const std::string& path) {
   ScriptEngine engine(runner_, registry_, cancel_, {});
-  engine.run(path, {});
+  std::vector<std::pair<std::string, std::string>> arguments;
+  const SettingValue* ct = present.source == Source::dicom ? find(present.loader.settings, "path") : nullptr;
+  if (ct)
+    for (const Parameter& p : engine.parametersOf(path))
+      if (p.name == "ct") arguments.emplace_back("ct", std::get<std::string>(*ct));
+
+  // What is solved on the way is kept by the runner, and found again when the choices are carried out.
+  ScriptCalls calls;
+  const struct Listening {
+    ScriptCalls*& to;
+    ~Listening() { to = nullptr; }
+  } listening{calls_};
+  calls_ = &calls;
+  try {
+    engine.run(path, arguments);
+  } catch (const Cancelled&) {
+    if (cancel_.load()) throw;   // by the user; otherwise the script has come as far as is shown
+  } catch (const Error& error) {
+    if (!calls.hasPrediction()) throw;
+    messages_.warn("script", error.what());   // what came before can be shown
+  }
+  if (calls.hasPatient()) return calls.choices(present);
+  return withPreset(present, engine, path);
+}
+
+Choices Pipeline::withPreset(Choices choices, const ScriptEngine& engine, const std::string& path) {
   const std::vector<Handle> effects = engine.handles("effects");
-  if (effects.empty()) throw Error("the file is no preset: it sets no list \"effects\"").given(path).advise("Choose a file that the window saved");
+  if (effects.empty()) throw Error("the file is neither a script that predicts nor a preset: it loads no patient and sets no list \"effects\"").given(path).advise("Open a script that begins with a loader, or a preset that the window saved");
   for (EffectChoice& effect : choices.effects) effect.isOn = false;
   for (const Handle& handle : effects) {
     const auto* call = dynamic_cast<const EffectCall*>(handle.value.get());

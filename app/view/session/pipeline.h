@@ -1,9 +1,11 @@
 // From choices to results, step by step, on the thread that calls it.
 #pragma once
 
+#include "app/view/session/live.h"
 #include "app/view/session/results.h"
+#include "app/view/session/script_calls.h"
+#include "app/view/session/study.h"
 
-#include "kernel/host/warm.h"
 #include "kernel/script/engine.h"
 
 #include <chrono>
@@ -32,19 +34,27 @@ class Pipeline {
   std::vector<PickedSpring> springsAt(int point);
   /// What each effect that is on changes and costs; `progress` from 0 to 1. Throws Cancelled.
   std::vector<EffectWorth> measureEffects(const std::function<void(double, const std::string&)>& progress);
+  /// What accuracy costs in the present scene. Throws Error and Cancelled.
+  Study study(const std::function<void(double, const std::string&)>& progress);
   /// Runs report.files on all that there is. Throws Error.
   void exportTo(const std::string& folder);
   /// A line of the console, which sees the results as ct, anatomy, cage, scene, plan, motion, comparison.
   void evaluate(const std::string& code);
-  /// The choices with a preset's in their place. Throws Error.
-  Choices withPreset(Choices choices, const std::string& path);
+  /// The choices that a Lua file makes: a script's whole way, which is run up to its first prediction and comparison and writes
+  /// nothing, or a preset's tuning of the present ones. A script's parameter "ct" is given the present patient. Throws Error.
+  Choices openedScript(const Choices& present, const std::string& path);
+  /// Called by the runner before each call.
+  void starting(const std::string& id, const Settings& settings, const Runner::PortInputs& inputs);
 
  private:
+  Choices withPreset(Choices choices, const ScriptEngine& engine, const std::string& path);
   void runStep(Step step);
   void runFrom(Step first, Step last);
+  void openResult();
   void solveLive();
   void solveFromRest();
-  void ensureWarm();
+  /// The warm solve of the present scene. Throws Error.
+  WarmSolve& warm();
   std::vector<Handle> run(const PluginChoice& plugin, const Runner::PortInputs& inputs);
   void show();
 
@@ -53,17 +63,17 @@ class Pipeline {
   std::atomic<bool>& cancel_;
   Show show_;
   Runner runner_;
+  LiveSolve live_;
   ScriptEngine console_;
   std::atomic<Step> present_{Step::nothing};
 
+  ScriptCalls* calls_ = nullptr;   // of the script that is being opened
   Choices done_;
   Step valid_ = Step::source;      // everything before this step belongs to done_
   bool hasFailed_ = false;
   Results results_;
   std::chrono::steady_clock::time_point since_, shown_;
 
-  std::unique_ptr<WarmSolve> warm_;
-  PluginChoice warmSolver_;
   NodeVectors lastSeen_;           // of the live solve that runs
   bool showsWay_ = false;          // whether the solve that runs is to be seen on its way
 };

@@ -16,6 +16,7 @@ namespace pectora::view {
 
 struct Results {
   Handle ct, anatomy, cage, scene, plan, motion;
+  Handle before, after, barMesh;   ///< of a result folder
   Handle phantomScan, phantomCtLandmarks, phantomScanLandmarks;
   Handle scan, aligned, byLandmarks, byIcp, comparison;
   std::shared_ptr<const std::vector<Vec3>> skin;   ///< of the scene's points; where the motion is on its way, or has ended

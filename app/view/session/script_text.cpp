@@ -54,42 +54,52 @@ std::string landmarkCall(const Landmarks& landmarks) {
   return fmt::format("scan.landmarks{{ names = {}, positions = {} }}", literal(names), literal(positions));
 }
 
+// The comparison with skins of these names, where there is a scan and a way to bring it here; otherwise nothing.
+std::string comparisonText(const Choices& c, const std::string& before, const std::string& after, const std::string& more) {
+  const bool hasPhantom = c.source == Source::phantom;
+  const bool hasLandmarks = c.ctLandmarks.points.size() >= 3 && c.scanLandmarks.points.size() >= 3;
+  if (!(hasPhantom || !c.scanPath.empty()) || !(hasLandmarks || (hasPhantom && c.scanPath.empty()))) return "";
+  std::string text = fmt::format("local scanned = {}\n", c.scanPath.empty() ? "phantom_scan" : "scan.file{ path = " + quoted(c.scanPath) + " }");
+  if (hasLandmarks) {
+    text += fmt::format("local on_scan = {}\n", landmarkCall(c.scanLandmarks));
+    text += fmt::format("local on_ct = {}\n", landmarkCall(c.ctLandmarks));
+  } else {
+    text += "local on_scan, on_ct = scan_landmarks, ct_landmarks\n";
+  }
+  text += fmt::format("local aligned, by_landmarks =\n  register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
+  if (c.usesIcp) text += fmt::format("local by_icp\naligned, by_icp = register.icp(aligned, {}, {})\n", before, after);
+  return text + fmt::format("local comparison = comparer.surface(aligned, {}, {{\n  name = \"scan_vs_simulated\", unchanged = {}{} }})\n\n", after, before, more);
+}
+
 }  // namespace
 
 std::string scriptOf(const Choices& c) {
   std::string text = "-- What the Pectora window shows, as a script: pectora run FILE.lua\n";
   const bool hasPhantom = c.source == Source::phantom;
   if (c.source == Source::none) return text + "-- Nothing is open yet.\n";
+  if (c.source == Source::result) {
+    const std::string folder = std::get<std::string>(*find(c.loader.settings, "path"));
+    text += fmt::format("local before = scan.file{{ path = {}, units = \"mm\" }}\n", quoted(folder + "/before.ply"));
+    text += fmt::format("local after = scan.file{{ path = {}, units = \"mm\" }}\n\n", quoted(folder + "/after.ply"));
+    return text + comparisonText(c, "before", "after", "") + "print(comparer.surface(before, after, { name = \"before_vs_after\", unchanged = before }))\n";
+  }
   text += fmt::format("local ct{} = {}{}\n", hasPhantom ? ", truth, phantom_scan, ct_landmarks, scan_landmarks" : "", c.loader.id, table(c.loader.settings));
   text += fmt::format("local anatomy = {}(ct{})\n", c.segmenter.id, lastArgument(c.segmenter.settings));
   text += fmt::format("local cage = {}(anatomy, ct{})\n\n", c.splines.id, lastArgument(c.splines.settings));
-  text += fmt::format("local scene = {}(cage, {{\n", c.model.id);
+  // A lattice is made of the cage alone, a solid of the CT, too.
+  text += fmt::format("local scene = {}(cage, {}{{\n", c.model.id, c.model.id == "model.two_layer" ? "" : "ct, ");
   if (!c.model.settings.empty()) text += "  " + fields(c.model.settings) + ",\n";
   text += "  effects = {\n" + effectList(c, "    ") + "  },\n})\n";
   text += fmt::format("local plan = {}(cage{})\n", c.planner.id, lastArgument(c.planner.settings));
   text += fmt::format("local motion = {}(scene, plan{})\n\n", c.solver.id, lastArgument(c.solver.settings));
 
-  // The comparison, where there is a scan and a way to bring it here.
-  const bool hasLandmarks = c.ctLandmarks.points.size() >= 3 && c.scanLandmarks.points.size() >= 3;
-  const bool isCompared = (hasPhantom || !c.scanPath.empty()) && (hasLandmarks || (hasPhantom && c.scanPath.empty()));
+  const std::string compared = comparisonText(c, "motion.before", "motion.after", ", copied = motion.copied");
   std::string lists;
-  if (isCompared) {
-    text += fmt::format("local scanned = {}\n", c.scanPath.empty() ? "phantom_scan" : "scan.file{ path = " + quoted(c.scanPath) + " }");
-    if (hasLandmarks) {
-      text += fmt::format("local on_scan = {}\n", landmarkCall(c.scanLandmarks));
-      text += fmt::format("local on_ct = {}\n", landmarkCall(c.ctLandmarks));
-    } else {
-      text += "local on_scan, on_ct = scan_landmarks, ct_landmarks\n";
-    }
-    text += fmt::format("local aligned, by_landmarks = register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
-    if (c.usesIcp) text += "local by_icp\naligned, by_icp = register.icp(aligned, motion.before, motion.after)\n";
-    text += "local comparison = comparer.surface(aligned, motion.after, { name = \"scan_vs_simulated\", unchanged = motion.before })\n\n";
-    lists = fmt::format(",\n              registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}, scan = aligned", c.usesIcp ? ", by_icp" : "");
-  }
-  text += "report.files{ ct = ct, anatomy = anatomy, cage = cage, scene = scene, plan = plan, motion = motion" + lists + ", path = \"result\" }\n";
+  if (!compared.empty()) lists = fmt::format(",\n  registration = {{ by_landmarks{} }}, comparisons = {{ comparison }}, scan = aligned", c.usesIcp ? ", by_icp" : "");
+  text += compared;
+  text += "report.files{\n  ct = ct, anatomy = anatomy, cage = cage,\n  scene = scene, plan = plan, motion = motion" + lists + ",\n  path = \"result\" }\n";
   text += "print(plan)\nprint(motion)\n";
-  if (isCompared) text += "print(comparison)\n";
-  return text;
+  return text + (compared.empty() ? "" : "print(comparison)\n");
 }
 
 std::string presetOf(const Choices& c) {

@@ -59,7 +59,8 @@ std::shared_ptr<const Results> Worker::results() const {
 Activity Worker::activity() const {
   const std::lock_guard lock(mutex_);
   Activity now = activity_;
-  now.seconds = std::chrono::duration<double>(Clock::now() - startedAt_).count();
+  now.seconds = now.isBusy ? std::chrono::duration<double>(Clock::now() - startedAt_).count() : 0;
+  now.isBusy = now.isBusy || hasWish_ || !tasks_.empty();   // what waits is work, too
   return now;
 }
 

@@ -47,6 +47,9 @@ class Worker final : public Messages {
  private:
   void info(const std::string& stage, const std::string& message) override { log(LogLine::Kind::info, stage + ": " + message); }
   void warn(const std::string& stage, const std::string& message) override { log(LogLine::Kind::warning, stage + ": " + message); }
+  void starting(const std::string& id, const Settings& settings, const std::vector<std::vector<Handle>>& inputs) override {
+    pipeline_.starting(id, settings, inputs);
+  }
   void preview(const NodeVectors& positions) override { pipeline_.preview(positions); }
   void loop();
 

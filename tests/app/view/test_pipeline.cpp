@@ -149,12 +149,102 @@ TEST(Pipeline, ConsoleSeesTheResultsAndPresetsComeBack) {
   tuned.solver.id = "solver.lbfgs";
   std::ofstream(path) << presetOf(tuned);
   Choices loaded = s.choices;
-  s.worker.run("preset", [&](Pipeline& pipeline) { loaded = pipeline.withPreset(s.choices, path.string()); });
+  s.worker.run("preset", [&](Pipeline& pipeline) { loaded = pipeline.openedScript(s.choices, path.string()); });
   s.wait();
   EXPECT_FALSE(loaded.effects[1].isOn);
   EXPECT_EQ(std::get<double>(*find(loaded.effects[0].plugin.settings, "youngs_modulus")), 222);
   EXPECT_EQ(loaded.solver.id, "solver.lbfgs");
   EXPECT_EQ(std::get<double>(*find(loaded.planner.settings, "lift")), 15);
+}
+
+TEST(Pipeline, OpensTheScriptThatTheWindowShowsAsWhatTheWindowShowed) {
+  Desk s;
+  assign(s.choices.planner.settings, "lift", 21.5);
+  assign(s.choices.effects[4].plugin.settings, "youngs_modulus", 33.0);
+  s.choices.effects.erase(s.choices.effects.begin() + 2);
+  s.choices.effects.push_back({{"effect.volume"}, true});
+  s.choices.registration = "similarity";
+  s.choices.usesIcp = false;
+  // As if they had been placed by hand, a millimetre beside the phantom's own.
+  const auto own = s.after(s.choices);
+  s.choices.ctLandmarks.points = Results::as<Landmarks>(own->phantomCtLandmarks)->points;
+  s.choices.scanLandmarks.points = Results::as<Landmarks>(own->phantomScanLandmarks)->points;
+  s.choices.ctLandmarks.points[0].position.x += 1;
+  const std::filesystem::path folder = freshFolder("script");
+  std::ofstream(folder / "session.lua") << scriptOf(s.choices);
+  Choices opened = initialChoices({"solver.verlet"});
+  s.worker.run("script", [&](Pipeline& pipeline) { opened = pipeline.openedScript(opened, (folder / "session.lua").string()); });
+  s.wait();
+  for (const LogLine& line : s.worker.takeLog()) EXPECT_NE(line.kind, LogLine::Kind::error) << line.text;
+  EXPECT_EQ(firstDifference(opened, s.choices), Step::nothing) << scriptOf(opened);
+  EXPECT_FALSE(std::filesystem::exists("result")) << "nothing is written unasked";
+  // And the prediction is found again where the script left it.
+  EXPECT_TRUE(s.after(opened)->motion.record);
+}
+
+TEST(Pipeline, SaysWhatIsWrongWithAScriptThatPredictsNothing) {
+  Desk s;
+  const std::filesystem::path path = freshFolder("no_script") / "half.lua";
+  std::ofstream(path) << "local ct = loader.phantom{ matrix = 128, slice_spacing = 5 }\n";
+  s.worker.takeLog();
+  s.worker.run("script", [&](Pipeline& pipeline) { pipeline.openedScript(s.choices, path.string()); });
+  s.wait();
+  std::string told;
+  for (const LogLine& line : s.worker.takeLog())
+    if (line.kind == LogLine::Kind::error) told += line.text;
+  EXPECT_NE(told.find("no prediction"), std::string::npos) << told;
+}
+
+TEST(Pipeline, StudiesWhatAccuracyCosts) {
+  Desk s;
+  s.after(s.choices);
+  Study study;
+  s.worker.run("study", [&](Pipeline& pipeline) { study = pipeline.study([](double, const std::string&) {}); });
+  s.wait();
+  ASSERT_GE(study.points.size(), 9u);
+  // Newton from 1e-2 to 1e-6 comes nearer to its own answer at 1e-8; the run that is shown is there once.
+  std::vector<double> newton;
+  int present = 0;
+  for (const StudyPoint& p : study.points) {
+    present += p.isPresent;
+    if (p.solver == "solver.newton" && !p.isPresent) newton.push_back(p.rms);
+    EXPECT_GT(p.milliseconds, 0);
+  }
+  EXPECT_EQ(present, 1);
+  ASSERT_EQ(newton.size(), 4u);
+  EXPECT_LT(newton[3], 0.1 * newton[0] + 1e-9);
+  EXPECT_LT(newton[3], 1e-4);
+}
+
+TEST(Pipeline, SolvesASolidThatHasAModelOfItsOwn) {
+  Desk s;
+  Choices solid = s.choices;
+  solid.model.id = "model.volume_mesh";
+  for (EffectChoice& effect : solid.effects) effect.isOn = effect.plugin.id != "effect.direct" && effect.plugin.id != "effect.cross";
+  solid.effects.push_back({{"effect.tissue"}, true});
+  const auto r = s.after(solid);
+  EXPECT_EQ(r->error, "");
+  ASSERT_TRUE(r->motionValue());
+  EXPECT_FALSE(r->motionValue()->between.empty());
+  // A picked point's springs are told here, too.
+  std::vector<PickedSpring> springs;
+  s.worker.run("springs", [&](Pipeline& pipeline) { springs = pipeline.springsAt(r->sceneValue()->index(3, 3)); });
+  s.wait();
+  for (const PickedSpring& spring : springs) EXPECT_LT(distance(spring.from, spring.to), 100) << "neighbours of one skin";
+}
+
+TEST(Pipeline, TellsLiftAndForceWhereTheBarGivesWay) {
+  Desk s;
+  s.choices.effects.push_back({{"effect.cartilage_bending"}, true});
+  s.choices.effects.push_back({{"effect.bar_compliance"}, true});
+  const auto r = s.after(s.choices);
+  EXPECT_EQ(r->error, "");
+  ASSERT_TRUE(r->motionValue());
+  EXPECT_LT(r->motionValue()->lift, 15);
+  EXPECT_GT(r->motionValue()->barForce, 0);
+  // What moves goes on from there, with the bar's own guides among the anchors.
+  assign(s.choices.planner.settings, "lift", 16.0);
+  EXPECT_TRUE(s.after(s.choices, true)->isLive);
 }
 
 TEST(Pipeline, ExportsWhatScriptsExport) {
@@ -164,4 +254,22 @@ TEST(Pipeline, ExportsWhatScriptsExport) {
   s.worker.run("export", [&](Pipeline& pipeline) { pipeline.exportTo(folder.string()); });
   s.wait();
   for (const char* file : {"summary.json", "after.ply", "bar.ply", "scan_vs_simulated.vtp"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+
+  // And what was exported is opened again, as a folder of results.
+  const auto made = s.worker.results();
+  Choices kept = s.choices;
+  kept.source = Source::result;
+  kept.loader = {"", {{"path", folder.string()}}};
+  kept.ctLandmarks = kept.scanLandmarks = {};
+  const auto r = s.after(kept);
+  EXPECT_EQ(r->error, "");
+  EXPECT_FALSE(r->motionValue());
+  const auto* after = Results::as<Mesh>(r->after);
+  ASSERT_TRUE(after);
+  EXPECT_TRUE(Results::as<Mesh>(r->barMesh));
+  EXPECT_LT(largestDistance(made->motionValue()->outer, after->points), 1e-3) << "files hold floats";
+  // Its script runs by itself.
+  std::ofstream(folder / "compare.lua") << scriptOf(kept);
+  const std::string command = "cd " + folder.string() + " && " PECTORA_PROGRAM " run --quiet compare.lua > out.txt 2> err.txt";
+  EXPECT_EQ(exitCode(command), 0) << readFile(folder / "err.txt") << scriptOf(kept);
 }

@@ -1,7 +1,7 @@
-// The whole window on a framebuffer without a display, worked by a hand as a user would.
-#include "app/view/hand.h"
+// The whole window, worked by a hand as a user would: on a framebuffer without a display, and as a real window under Xvfb.
+#include "tests/app/view/walk.h"
+#include "tests/app/view/xvfb.h"
 
-#include "kernel/stage/error.h"
 #include "tests/app/helpers.h"
 
 using namespace pectora;
@@ -9,57 +9,97 @@ using namespace pectora::view;
 
 namespace {
 
-double brightness(const std::vector<unsigned char>& rgba) {
-  double sum = 0;
-  for (std::size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i] + rgba[i + 1] + rgba[i + 2];
-  return sum / (0.75 * double(rgba.size()));
+// Taken once, for all tests of this run.
+const Walk& walkOffscreen(const std::string& folder) {
+  static Walk walk;
+  if (walk.width > 0) return walk;
+  const ImGuiHolder imgui;
+  const auto target = makeOffscreen(1280, 800, 1);
+  Registry registry({PECTORA_PLUGINS});
+  App app(*target, registry, [] {});
+  Hand hand(app);
+  return walk = walkThrough(app, hand, *target, folder);
 }
 
 }  // namespace
 
-TEST(Window, OpensAPhantomMovesTheBarUndoesAndLeavesNothingBehind) {
-  // A home of its own: the user's recent files are none of a test's business.
-  const std::string home = freshFolder("view_home").string();
-  setenv("XDG_STATE_HOME", home.c_str(), 1);
-  setenv("XDG_CONFIG_HOME", home.c_str(), 1);
+TEST(Window, DoesWhatTheHandDoesAndLeavesNothingBehind) {
+  const std::string home = ownHome("view_home");
   {
-    const ImGuiHolder imgui;
-    const auto target = makeOffscreen(1280, 800, 1);
-    Registry registry({PECTORA_PLUGINS});
-    App app(*target, registry, [] {});
-    Hand hand(app);
-    ASSERT_TRUE(hand.rest());
-    const double empty = brightness(target->pixels());
-    assign(app.context().choices.model.settings, "spacing", 14.0);
-    hand.click("opening.phantom");
-    ASSERT_TRUE(hand.rest());
-    ASSERT_TRUE(app.context().results->motionValue()) << app.context().results->error;
-    EXPECT_GT(brightness(target->pixels()), empty + 5) << "a chest is to be seen";
-
-    // The bar's lift by its slider: another skin, and undo brings the first one back.
-    hand.click("tab.bar");
-    hand.frames(3);
-    const auto first = app.context().results->motionValue()->outer;
-    hand.drag("bar.lift", {0.5f, 0.5f}, {0.35f, 0.5f});
-    ASSERT_TRUE(hand.rest());
-    const Plan* lower = app.context().results->planValue();
-    EXPECT_LT(lower->lift, 30);
-    EXPECT_NE(app.context().results->motionValue()->outer.front(), Vec3{});
-    hand.click("undo");
-    ASSERT_TRUE(hand.rest());
-    EXPECT_EQ(app.context().results->planValue()->lift, 30);
-    EXPECT_EQ(app.context().results->motionValue()->outer, first) << "settled skins are the script's, whatever came before";
-
-    // A click on the skin tells about a point; a picture is written.
-    hand.click("tab.tissue");
-    hand.frames(3);
-    hand.click("scene", 0.5f, 0.45f);
-    ASSERT_TRUE(hand.rest());
-    ASSERT_TRUE(app.context().picked);
-    EXPECT_FALSE(app.context().picked->springs.empty());
-    app.savePicture(home + "/picture.png");
-    EXPECT_GT(std::filesystem::file_size(home + "/picture.png"), 20000u);
-    EXPECT_EQ(openGlErrors(), 0);
+    const Walk& walk = walkOffscreen(home);
+    // A chest is to be seen, and the bar's way and the distances change the picture by more than edges do.
+    EXPECT_GT(meanDifference(walk.empty, walk.opened, walk.width, walk.scene), 5);
+    EXPECT_GT(meanDifference(walk.opened, walk.sawDistances, walk.width, walk.scene), 5);
   }
   EXPECT_EQ(liveGpuObjects(), 0);
+}
+
+TEST(Window, PicksAPointAndTellsItsSprings) {
+  ownHome("view_pick_home");
+  const ImGuiHolder imgui;
+  const auto target = makeOffscreen(1280, 800, 1);
+  Registry registry({PECTORA_PLUGINS});
+  App app(*target, registry, [] {});
+  Hand hand(app);
+  ASSERT_TRUE(hand.rest());
+  app.context().choices.loader = {"loader.phantom", {{"matrix", 128.0}, {"slice_spacing", 5.0}}};
+  assign(app.context().choices.model.settings, "spacing", 14.0);
+  hand.click("opening.phantom");
+  ASSERT_TRUE(hand.rest());
+  hand.click("tab.tissue");
+  ASSERT_TRUE(hand.rest());
+  const Scene& scene = *app.context().results->sceneValue();
+  const Vec3 at = app.camera().project((*app.context().results->skin)[scene.index(scene.rows / 2, scene.columns / 2)]);
+  hand.click("scene", float(at.x), float(at.y));
+  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(app.context().picked);
+  EXPECT_FALSE(app.context().picked->springs.empty());
+}
+
+TEST(Window, IsTheSameOnARealDisplayWorkedByMouseAndKeyboard) {
+  const std::string home = ownHome("view_display_home");
+  Xvfb display(1280, 800);
+  if (!display.isThere()) GTEST_SKIP() << "Xvfb or xdotool is not installed (third_party/install.sh does)";
+  const Walk& without = walkOffscreen(home + "/offscreen");
+  Walk with;
+  {
+    const ImGuiHolder imgui;
+    const auto target = makeWindow(1280, 800, 1);
+    Registry registry({PECTORA_PLUGINS});
+    App app(*target, registry, [] { wakeWindow(); });
+    DisplayHand hand(app, *target);
+    with = walkThrough(app, hand, *target, home + "/display");
+    // At rest nothing asks for another frame.
+    EXPECT_FALSE(app.wantsFrame());
+  }
+  EXPECT_EQ(liveGpuObjects(), 0);
+  // The same deeds give the same plan: mouse positions are whole pixels, of about 0.5 mm here, and settings have one decimal.
+  EXPECT_NEAR(with.lift, without.lift, 1.0);
+  EXPECT_NEAR(with.level, without.level, 1.0);
+  // And the same pictures: both are drawn in software, and only edges may fall on another side of a pixel.
+  ASSERT_EQ(with.width, without.width);
+  for (const auto& [a, b] : {std::pair{&with.opened, &without.opened}, std::pair{&with.sawDistances, &without.sawDistances}}) {
+    EXPECT_LT(meanDifference(*a, *b, with.width, with.scene), 1);
+    const auto x = meanColor(*a, with.width, with.scene), y = meanColor(*b, with.width, with.scene);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(x[c], y[c], 0.5);
+  }
+  EXPECT_GT(meanDifference(with.empty, with.opened, with.width, with.scene), 5);
+}
+
+TEST(Window, ProgramOpensOneAndEndsWhenItIsClosed) {
+  const std::string home = ownHome("view_program_home");
+  Xvfb display(1280, 800);
+  if (!display.isThere()) GTEST_SKIP() << "Xvfb or xdotool is not installed (third_party/install.sh does)";
+  // Ctrl+Q goes to the window as soon as there is one.
+  const std::string command = "timeout 60 " PECTORA_PROGRAM " view > " + home + "/out.txt 2>&1 & program=$!; "
+                              "window=$(timeout 30 xdotool search --sync --onlyvisible --name '^Pectora$' | head -1); "
+                              "sleep 0.5; xdotool mousemove 640 400; xdotool key --clearmodifiers ctrl+q; wait $program";
+  EXPECT_EQ(exitCode(command), 0) << readFile(home + "/out.txt");
+}
+
+TEST(Window, ProgramSaysWhatToDoWithoutADisplay) {
+  const std::string home = ownHome("view_without_home");
+  const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " PECTORA_PROGRAM " view > " + home + "/out.txt 2>&1";
+  EXPECT_EQ(exitCode(command), 2);
+  EXPECT_NE(readFile(home + "/out.txt").find("no display can be opened"), std::string::npos) << readFile(home + "/out.txt");
 }

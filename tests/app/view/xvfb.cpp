@@ -1,0 +1,72 @@
+#include "tests/app/view/xvfb.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace pectora::view {
+
+Xvfb::Xvfb(int width, int height) {
+  if (std::system("command -v Xvfb > /dev/null && command -v xdotool > /dev/null") != 0) return;
+  // Xvfb chooses a free number, and writes it when it is ready.
+  int ends[2];
+  if (pipe(ends) != 0) return;
+  const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24", number = std::to_string(ends[1]);
+  process_ = fork();
+  if (process_ == 0) {
+    close(ends[0]);
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, 1);
+    dup2(nowhere, 2);
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp", nullptr);
+    _exit(1);
+  }
+  close(ends[1]);
+  std::string told;
+  for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) told += c;
+  close(ends[0]);
+  setenv("DISPLAY", (":" + told).c_str(), 1);
+}
+
+Xvfb::~Xvfb() {
+  if (process_ <= 0) return;
+  unsetenv("DISPLAY");
+  kill(process_, SIGTERM);
+  waitpid(process_, nullptr, 0);
+}
+
+void DisplayHand::act(const std::string& words) {
+  if (std::system(("xdotool " + words).c_str()) != 0) throw std::runtime_error("xdotool " + words);
+  frames(3);
+}
+
+void DisplayHand::step() {
+  target_.wait(0);
+  app_.frame();
+}
+
+void DisplayHand::moveTo(ImVec2 at) { act("mousemove " + std::to_string(int(at.x + 0.5f)) + " " + std::to_string(int(at.y + 0.5f))); }
+void DisplayHand::press(bool isDown) { act(isDown ? "mousedown 1" : "mouseup 1"); }
+
+void DisplayHand::type(const std::string& text, bool enter) {
+  act("type --delay 25 '" + text + "'");
+  if (!enter) return;
+  act("keydown Return");
+  act("keyup Return");
+}
+
+void DisplayHand::control(char letter) {
+  // One by one: a key that goes down and up between two frames is not seen.
+  const std::string key(1, letter);
+  act("keydown Control_L");
+  act("keydown " + key);
+  act("keyup " + key);
+  act("keyup Control_L");
+}
+
+}  // namespace pectora::view

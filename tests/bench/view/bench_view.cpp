@@ -1,0 +1,109 @@
+// What a user of the window waits for: a picture of 200,000 lit triangles, drawn in software, and the new skin after the bar or a
+// spring constant was moved. "points" are those of the skin; a wall's time is from the wish to the skin in the results, as the
+// window takes it: plan, compiled scene, solve.
+#include "app/view/platform/target.h"
+#include "app/view/render/renderer.h"
+#include "app/view/session/worker.h"
+
+#include <benchmark/benchmark.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <map>
+#include <thread>
+
+namespace {
+using namespace pectora;
+using namespace pectora::view;
+
+// A wavy sheet of rows x columns points before the camera.
+Surface sheet(int rows, int columns) {
+  Surface s;
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const double x = -200 + 400.0 * c / (columns - 1), z = -200 + 400.0 * r / (rows - 1);
+      s.points.push_back({x, 20 * std::sin(0.05 * x) * std::cos(0.04 * z), z});
+    }
+  s.triangles = layerMesh(rows, columns, {}).triangles;
+  s.computeNormals();
+  return s;
+}
+
+void drawing(benchmark::State& state) {
+  ImGui::CreateContext();
+  {
+    const auto target = makeOffscreen(1280, 800, 1);
+    const Renderer renderer;
+    const Surface surface = sheet(317, 317);   // 2 x 316 x 316 triangles
+    GpuSurface gpu;
+    gpu.upload(surface);
+    Frame frame;
+    frame.resize(720, 700, int(state.range(0)));   // the scene's place in a window of 1280 x 800
+    Camera camera;
+    camera.aspect = 720.0 / 700;
+    camera.frame({}, 220);
+    for (auto _ : state) {
+      camera.yaw += 0.01;
+      renderer.draw(frame, camera, {{&gpu, {}}}, {}, 3.2f);
+      benchmark::DoNotOptimize(readPixels(frame.framebuffer(), 1, 1));   // waits for the picture
+    }
+    state.counters["triangles"] = double(surface.triangles.size());
+  }
+  ImGui::DestroyContext();
+}
+
+// A phantom in the window's pipeline, solved; made once a spacing.
+struct Desk {
+  Registry registry{{PECTORA_PLUGINS}};
+  Worker worker{registry, [] {}};
+  Choices choices = initialChoices({"solver.newton"});
+  double lift = 20, modulus = 20;
+
+  explicit Desk(double spacing) {
+    choices.source = Source::phantom;
+    choices.loader = {"loader.phantom", {{"matrix", 256.0}}};
+    assign(choices.model.settings, "spacing", spacing);
+    assign(choices.planner.settings, "lift", lift);
+    if (spacing < 6) choices.solver = {"solver.multigrid"};
+    after(false);
+  }
+  std::shared_ptr<const Results> after(bool isDragging) {
+    const auto before = worker.results();
+    worker.want(choices, isDragging);
+    do std::this_thread::sleep_for(std::chrono::microseconds(200));
+    while (worker.activity().isBusy || worker.results() == before);
+    return worker.results();
+  }
+  static Desk& of(double spacing) {
+    static std::map<double, std::unique_ptr<Desk>> all;
+    if (!all[spacing]) all[spacing] = std::make_unique<Desk>(spacing);
+    return *all[spacing];
+  }
+};
+
+void follow(benchmark::State& state, bool isBar) {
+  Desk& desk = Desk::of(double(state.range(0)) / 100);
+  double sum = 0;
+  for (auto _ : state) {
+    // To and fro by 2 mm, or by 20 % of a stiffness.
+    if (isBar) assign(desk.choices.planner.settings, "lift", desk.lift = desk.lift == 20 ? 22 : 20);
+    else assign(desk.choices.effects[4].plugin.settings, "youngs_modulus", desk.modulus = desk.modulus == 20 ? 24 : 20);
+    const auto r = desk.after(true);
+    if (!r->isLive) state.SkipWithError(("not live: " + r->error).c_str());
+    state.SetIterationTime(r->liveMs / 1000);
+    sum += r->motionValue() ? r->motionValue()->forceEvaluations : 0;
+  }
+  const auto r = desk.worker.results();
+  state.counters["points"] = r->sceneValue() ? r->sceneValue()->points() : 0;
+  state.counters["force_evaluations"] = sum / double(state.iterations());
+}
+
+void barMoves(benchmark::State& state) { follow(state, true); }
+void stiffnessMoves(benchmark::State& state) { follow(state, false); }
+
+}  // namespace
+
+BENCHMARK(drawing)->ArgName("samples")->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(barMoves)->ArgName("hundredths_mm")->Arg(1000)->Arg(400)->Arg(177)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
+BENCHMARK(stiffnessMoves)->ArgName("hundredths_mm")->Arg(1000)->Arg(400)->Arg(177)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(10);
+BENCHMARK_MAIN();
