@@ -160,9 +160,9 @@ void ComparePanel::drawSide(Context& context, int side, ImVec2 size) {
     ImVec2 place;
     if (!s.viewport.screen(s.toShown(l.position), place)) continue;
     const std::string name = readable(l.name);
-    const ImVec2 box = ImGui::CalcTextSize(name.c_str()), at{std::min(place.x + 0.7f * em, s.viewport.low().x + s.viewport.size().x - box.x - 0.4f * em), place.y - 0.5f * em};
-    list->AddRectFilled({at.x - 0.3f * em, at.y - 0.1f * em}, {at.x + box.x + 0.3f * em, at.y + box.y + 0.1f * em}, IM_COL32(24, 28, 33, 210), 3);
-    list->AddText(at, IM_COL32(255, 190, 110, 255), name.c_str());
+    const ImVec2 box = ImGui::CalcTextSize(name.c_str()), corner{std::min(place.x + 0.7f * em, s.viewport.low().x + s.viewport.size().x - box.x - 0.4f * em), place.y - 0.5f * em};
+    list->AddRectFilled({corner.x - 0.3f * em, corner.y - 0.1f * em}, {corner.x + box.x + 0.3f * em, corner.y + box.y + 0.1f * em}, IM_COL32(24, 28, 33, 210), 3);
+    list->AddText(corner, IM_COL32(255, 190, 110, 255), name.c_str());
   }
   if (s.shown.points.empty()) list->AddText({s.viewport.low().x + em, s.viewport.low().y + 3 * em}, IM_COL32(170, 178, 186, 255), "Nothing here yet");
 }

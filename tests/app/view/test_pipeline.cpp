@@ -52,8 +52,9 @@ TEST(Pipeline, GoesAllTheWayToAComparisonWithThePhantomsScan) {
 
 TEST(Pipeline, LiveSkinEndsAsTheScriptsDoes) {
   Desk s;
+  assign(s.choices.planner.settings, "lift", 5.0);
   s.after(s.choices);
-  assign(s.choices.planner.settings, "lift", 18.0);
+  assign(s.choices.planner.settings, "lift", 6.0);
   const auto live = s.after(s.choices, true);
   ASSERT_TRUE(live->skin);
   EXPECT_TRUE(live->isLive);

@@ -103,7 +103,9 @@ TEST(GiveContour, MeasuresTheLevelAgainFromTheSternum) {
   const Anatomy changed = giveContour(simple(), "sternum", -101, {{-15, -60, 0}, {15, -60, 0}, {15, -52, 0}, {-15, -52, 0}});
   for (const LevelMetrics& m : changed.metrics) EXPECT_NEAR(m.sternumToVertebra, m.z == -100 ? 52 : 70, 1e-9) << m.z;
   for (const SliceContour& c : changed.contours)
-    if (c.points.front().z == -100) EXPECT_EQ(c.points.front().y, -60);
+    if (c.points.front().z == -100) {
+      EXPECT_EQ(c.points.front().y, -60);
+    }
 }
 
 TEST(GiveContour, MeasuresTheLevelAgainFromThePleuraAndUnclipsTheSkin) {

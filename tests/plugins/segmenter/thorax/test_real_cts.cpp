@@ -103,7 +103,8 @@ TEST_P(RealCt, HasAWallAsThickAsChestWallsAre) {
       double nearest = 1e300;
       for (const Vec3& q : anatomy->skin[n].points) nearest = std::min(nearest, distance(q, inner[i]));
       EXPECT_GT(nearest, 3.5) << anatomy->skin[n].z;
-      if (4 * i > inner.size() && 4 * i < 3 * inner.size()) EXPECT_LT(nearest, 90) << anatomy->skin[n].z;
+      const bool isInFront = 4 * i > inner.size() && 4 * i < 3 * inner.size();
+      EXPECT_LT(isInFront ? nearest : 0, 90) << anatomy->skin[n].z;
     }
   }
 }
@@ -114,8 +115,9 @@ TEST_P(RealCt, TakesNeitherCouchNorBlanketForBone) {
     if (c.structure == "vertebra")
       for (const Vec3& p : c.points) back = std::max(back, p.y);
   for (const SliceContour& c : anatomy->contours)
-    if (c.structure == "scapula" || c.structure == "rib")
+    if (c.structure == "scapula" || c.structure == "rib") {
       for (const Vec3& p : c.points) ASSERT_LT(p.y, back + 60) << c.structure << " in slice " << c.slice;
+    }
 }
 INSTANTIATE_TEST_SUITE_P(Ct, RealCt, testing::Values("lidc_0314", "acrin_flt_013", "cptac_c3l00189"), [](const auto& each) { return std::string(each.param); });
 
@@ -128,7 +130,9 @@ TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
   ASSERT_EQ(std::count_if(anatomy->ranges.begin(), anatomy->ranges.end(), [](const SliceRange& r) { return r.what == "clipped skin"; }), 1);
   const double lowest = anatomy->skin.front().z;
   for (const SliceRange& range : anatomy->ranges)
-    if (range.what == "clipped skin") EXPECT_NEAR(range.low - lowest, 191, 3);
+    if (range.what == "clipped skin") {
+      EXPECT_NEAR(range.low - lowest, 191, 3);
+    }
 }
 
 TEST(RealCts, OfThickSlicesSaysSo) {
