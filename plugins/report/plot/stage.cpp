@@ -1,14 +1,10 @@
 #include "plugins/report/plot/plot.h"
 
-#include "plugins/report/common/atomic_file.h"
 #include "plugins/report/common/gnuplot.h"
 
 #include "kernel/stage/plugin.h"
-#include "kernel/value/comparison.h"
 
 #include <cstdlib>
-#include <filesystem>
-
 namespace {
 using namespace pectora;
 
@@ -41,15 +37,7 @@ class Plot final : public Stage {
   Outputs run(const Inputs&, Host&) override {
     if (path_.empty()) throw Error("a file to write is needed").of("path");
     for (const std::string& text : points_) picture_.points.push_back(parsePoint(text));
-    const std::filesystem::path path = path_;
-    if (path.has_parent_path()) makeFolder(path.parent_path().string());
-    const std::string aside = asideName(path_);
-    runGnuplot(gnuplotCommands(picture_, aside), aside + ".gp");
-    publish(path_);
-    auto report = std::make_shared<Report>();
-    report->folder = path.parent_path().string();
-    report->files = {path.filename().string()};
-    return {report};
+    return {drawPicture(path_, [&](const std::string& png) { return gnuplotCommands(picture_, png); })};
   }
 
  private:

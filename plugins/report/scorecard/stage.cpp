@@ -1,13 +1,9 @@
 // report.scorecard: a study's table as a picture, against what is to be reached.
 #include "plugins/report/scorecard/scorecard.h"
 
-#include "plugins/report/common/atomic_file.h"
 #include "plugins/report/common/gnuplot.h"
 
 #include "kernel/stage/plugin.h"
-#include "kernel/value/comparison.h"
-
-#include <filesystem>
 
 namespace {
 using namespace pectora;
@@ -24,15 +20,7 @@ class ScorecardStage final : public Stage {
   Outputs run(const Inputs&, Host&) override {
     if (path_.empty()) throw Error("a file to write is needed").of("path");
     const Scorecard card = readScorecard(title_, lines_, goals_);
-    const std::filesystem::path path = path_;
-    if (path.has_parent_path()) makeFolder(path.parent_path().string());
-    const std::string aside = asideName(path_);
-    runGnuplot(gnuplotCommands(card, aside), aside + ".gp");
-    publish(path_);
-    auto report = std::make_shared<Report>();
-    report->folder = path.parent_path().string();
-    report->files = {path.filename().string()};
-    return {report};
+    return {drawPicture(path_, [&](const std::string& png) { return gnuplotCommands(card, png); })};
   }
 
  private:

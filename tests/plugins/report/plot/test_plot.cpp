@@ -32,7 +32,7 @@ TEST(Plot, FrontIsWhatNoOtherRunBeatsInBoth) {
 TEST(Plot, GnuplotDrawsAPng) {
   const fs::path png = fs::path(testing::TempDir()) / "pectora_plot_test.png";
   fs::remove(png);
-  runGnuplot(gnuplotCommands(picture(), png.string()), png.string() + ".gp");
+  drawPicture(png.string(), [](const std::string& file) { return gnuplotCommands(picture(), file); });
   std::ifstream file(png, std::ios::binary);
   std::string head(8, '\0');
   file.read(head.data(), 8);

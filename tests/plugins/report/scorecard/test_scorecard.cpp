@@ -41,7 +41,7 @@ TEST(Scorecard, KnowsWhatReachesAGoal) {
 TEST(Scorecard, IsDrawnByGnuplot) {
   const fs::path png = fs::path(testing::TempDir()) / "pectora_scorecard_test.png";
   fs::remove(png);
-  runGnuplot(gnuplotCommands(readScorecard("A title", kLines, {-20, 1}), png.string()), png.string() + ".gp");
+  drawPicture(png.string(), [](const std::string& file) { return gnuplotCommands(readScorecard("A title", kLines, {-20, 1}), file); });
   std::ifstream file(png, std::ios::binary);
   std::string head(8, '\0');
   file.read(head.data(), 8);
