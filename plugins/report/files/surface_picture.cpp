@@ -1,5 +1,7 @@
 #include "plugins/report/files/surface_picture.h"
 
+#include "plugins/common/surface/point_normals.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,16 +69,6 @@ void drawTriangle(DepthFrame& frame, const FrontView& view, const std::array<Vec
   }
 }
 
-std::vector<Vec3> vertexNormals(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.points.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 n = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
-    for (int corner : t) normals[corner] += n;
-  }
-  for (Vec3& n : normals) n = normalized(n);
-  return normals;
-}
-
 const std::vector<double>* findField(const std::vector<PointField>& fields, const std::string& name) {
   for (const PointField& f : fields)
     if (f.name == name) return &f.values;
@@ -101,7 +93,7 @@ Canvas surfacePicture(const Value& surface, const std::string& field, double lim
   DepthFrame frame{canvas};
   if (const auto* mesh = dynamic_cast<const Mesh*>(&surface)) {
     const FrontView view(mesh->points);
-    const std::vector<Vec3> normals = vertexNormals(*mesh);
+    const std::vector<Vec3> normals = pointNormals(*mesh);
     const std::vector<double>* values = findField(mesh->fields, field);
     for (const auto& t : mesh->triangles) {
       std::array<double, 3> v{};
