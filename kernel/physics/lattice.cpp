@@ -19,7 +19,8 @@ class Grid {
  public:
   Grid(const System& system, std::vector<StencilSpring> stencil)
       : rows_(system.rows), columns_(system.columns), layers_(system.layers), stencil_(std::move(stencil)) {
-    for (const StencilSpring& s : stencil_) blockRows_ = std::max(blockRows_, 2 * std::abs(s.rows));
+    for (const StencilSpring& s : stencil_) reach_ = std::max(reach_, std::abs(s.rows));
+    blockRows_ = std::max(blockRows_, 2 * reach_);
     blocks_ = (std::size_t(rows_) + blockRows_ - 1) / blockRows_;
   }
 
@@ -39,6 +40,18 @@ class Grid {
     if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0};
     const auto node = [&](Layer layer, int r, int c) { return (std::size_t(layer == Layer::inner ? layers_ - 1 : 0) * rows_ + r) * columns_ + c; };
     return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first), std::size_t(first)};
+  }
+
+  /// Skin and pleura in the rows that springs which start in some rows reach, numbered one after the other.
+  struct Window {
+    std::size_t first[2];   // nodes, of skin and pleura
+    std::size_t nodes;      // of both
+    std::size_t local(std::size_t node) const { return node - first[1] < nodes / 2 ? nodes / 2 + node - first[1] : node - first[0]; }
+  };
+  Window window(int begin, int end) const {
+    const int from = std::max(0, begin - reach_), to = std::min(rows_, end + reach_);
+    const std::size_t first = std::size_t(from) * columns_;
+    return {{first, std::size_t(layers_ - 1) * rows_ * columns_ + first}, 2 * std::size_t(to - from) * columns_};
   }
 
   /// Calls f(block, first row, end row) for every block, at most one of two neighbours at a time.
@@ -62,7 +75,7 @@ class Grid {
   }
 
  private:
-  int rows_, columns_, layers_, blockRows_ = 8;
+  int rows_, columns_, layers_, reach_ = 0, blockRows_ = 8;
   std::size_t blocks_;
   std::vector<StencilSpring> stencil_;
 };
@@ -102,18 +115,24 @@ class LatticeHessian final : public Hessian {
   bool isDegenerate(const Grid::Run& run, std::size_t i) const;
 
   const LatticeTerm& term_;
-  SingleVectors rest_, moved_;
+  const SingleVectors& rest_;
+  SingleVectors moved_;
   bool projected_ = true;
 };
 
 class LatticeTerm final : public Term {
  public:
   LatticeTerm(std::string name, const System& system, std::vector<StencilSpring> stencil)
-      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(system.rest) {}
+      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(grid_.nodes()), restSingle_(grid_.nodes()) {
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_.set(i, system.rest[i]);
+    take(rest_, rest_[0], restSingle_);
+  }
 
   std::string name() const override { return name_; }
   const Grid& grid() const { return grid_; }
+  /// The nodes of all layers at rest, and the same counted from the first, which keeps them small.
   const NodeVectors& rest() const { return rest_; }
+  const SingleVectors& restSingle() const { return restSingle_; }
   RowSprings<double> springs(const NodeVectors& positions, const Grid::Run& r, std::size_t entry) const {
     const StencilSpring& s = grid_.stencil()[entry];
     return {r.count, rowOf(positions, r.near), rowOf(positions, r.far), rowOf(rest_, r.near), rowOf(rest_, r.far),
@@ -136,35 +155,12 @@ class LatticeTerm final : public Term {
   }
 
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
-    const std::size_t columns = grid_.columns();
-    std::vector<double> energies(grid_.blocks()), largest(grid_.blocks());
-    grid_.forEachBlock([&](std::size_t block, int begin, int end) {
-      std::vector<double> work(6 * columns);
-      const Row<double> pull{&work[0], &work[columns], &work[2 * columns]};
-      double *twice = &work[3 * columns], *greatest = &work[4 * columns], *degenerate = &work[5 * columns];
-      grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
-        springForces(springs(positions, r, entry), pull, {twice + r.column, greatest + r.column, degenerate + r.column});
-        const ConstRow<double> pulled{pull.x, pull.y, pull.z};
-        addRow(r.count, pulled, -1, rowOf(gradient, r.near));
-        addRow(r.count, pulled, 1, rowOf(gradient, r.far));
-      });
-      for (std::size_t c = 0; c < columns; ++c) {
-        energies[block] += 0.5 * twice[c];
-        largest[block] = std::max(largest[block], greatest[c]);
-      }
-      if (std::any_of(degenerate, degenerate + columns, [](double d) { return d > 0; }))
-        forEachDegenerate(positions, begin, end, [&](const Degenerate& d) {
-          const Vec3 force = d.direction * (d.stiffness * (d.length - d.restLength));
-          gradient.add(d.near, -force);
-          gradient.add(d.far, force);
-        });
+    return evaluate(largestForce, [&](int begin, int end, BlockSums& sums) { evaluateBlock(positions, begin, end, gradient, sums); });
+  }
+  double evaluateRoughly(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
+    return evaluate(largestForce, [&](int begin, int end, BlockSums& sums) {
+      if (!evaluateBlockRoughly(positions, begin, end, gradient, sums)) evaluateBlock(positions, begin, end, gradient, sums);
     });
-    double total = 0;
-    for (std::size_t block = 0; block < grid_.blocks(); ++block) {
-      total += energies[block];
-      largestForce = std::max(largestForce, largest[block]);
-    }
-    return total;
   }
 
   void addStiffnessBound(std::vector<double>& bound) const override {
@@ -202,15 +198,86 @@ class LatticeTerm final : public Term {
   }
 
  private:
+  // What a block of rows adds up.
+  struct BlockSums {
+    double energy = 0, largest = 0;
+  };
+  // Calls one(first row, end row, sums) for every block; returns the energy.
+  template <class F>
+  double evaluate(double& largestForce, F&& one) const {
+    std::vector<BlockSums> sums(grid_.blocks());
+    grid_.forEachBlock([&](std::size_t block, int begin, int end) { one(begin, end, sums[block]); });
+    double total = 0;
+    for (const BlockSums& s : sums) {
+      total += s.energy;
+      largestForce = std::max(largestForce, s.largest);
+    }
+    return total;
+  }
+
+  void evaluateBlock(const NodeVectors& positions, int begin, int end, NodeVectors& gradient, BlockSums& sums) const {
+    const std::size_t columns = grid_.columns();
+    std::vector<double> work(6 * columns);
+    const Row<double> pull{&work[0], &work[columns], &work[2 * columns]};
+    double *twice = &work[3 * columns], *greatest = &work[4 * columns], *degenerate = &work[5 * columns];
+    grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
+      springForces(springs(positions, r, entry), rowOf(gradient, r.near), pull, {twice + r.column, greatest + r.column, degenerate + r.column});
+      addRow(r.count, {pull.x, pull.y, pull.z}, rowOf(gradient, r.far));
+    });
+    for (std::size_t c = 0; c < columns; ++c) {
+      sums.energy += 0.5 * twice[c];
+      sums.largest = std::max(sums.largest, greatest[c]);
+    }
+    if (std::any_of(degenerate, degenerate + columns, [](double d) { return d > 0; }))
+      forEachDegenerate(positions, begin, end, [&](const Degenerate& d) {
+        const Vec3 force = d.direction * (d.stiffness * (d.length - d.restLength));
+        gradient.add(d.near, -force);
+        gradient.add(d.far, force);
+      });
+  }
+
+  // Returns false, and has done nothing, where a spring has no direction or a number is not finite.
+  bool evaluateBlockRoughly(const NodeVectors& positions, int begin, int end, NodeVectors& gradient, BlockSums& sums) const {
+    const std::size_t columns = grid_.columns();
+    const Grid::Window w = grid_.window(begin, end);
+    // Of skin and pleura in these rows and those that springs reach from them: movement and gradient; and a row's sums.
+    thread_local std::vector<float> room;
+    room.resize(std::max(room.size(), 6 * w.nodes + 6 * columns));
+    std::fill_n(&room[3 * w.nodes], 3 * w.nodes + 6 * columns, 0.0f);
+    const auto vectors = [&](std::size_t first, std::size_t stride) { return Row<float>{&room[first], &room[first + stride], &room[first + 2 * stride]}; };
+    const Row<float> moved = vectors(0, w.nodes), forces = vectors(3 * w.nodes, w.nodes), pull = vectors(6 * w.nodes, columns);
+    float *twice = pull.z + columns, *greatest = twice + columns, *degenerate = greatest + columns;
+    const std::size_t half = w.nodes / 2;
+    for (std::size_t side : {0, 1}) subtractRows(half, rowOf(positions, w.first[side]), rowOf(rest_, w.first[side]), at(moved, side * half));
+    grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
+      const StencilSpring& s = grid_.stencil()[entry];
+      const std::size_t n = w.local(r.near), f = w.local(r.far);
+      springForces({r.count, constant(at(moved, n)), constant(at(moved, f)), rowOf(restSingle_, r.near), rowOf(restSingle_, r.far),
+                    float(s.stiffnessNPerMm), float(s.compression)},
+                   at(forces, n), pull, {twice + r.column, greatest + r.column, degenerate + r.column});
+      addRow(r.count, constant(pull), at(forces, f));
+    });
+    double energy = 0, largest = 0;
+    bool isSound = true;
+    for (std::size_t c = 0; c < columns; ++c) {
+      energy += 0.5 * double(twice[c]);
+      largest = std::max(largest, double(greatest[c]));
+      isSound = isSound && degenerate[c] == 0;
+    }
+    if (!isSound || !std::isfinite(energy)) return false;
+    sums = {energy, std::sqrt(largest)};
+    for (std::size_t side : {0, 1}) addRow(half, constant(at(forces, side * half)), rowOf(gradient, w.first[side]));
+    return true;
+  }
+
   std::string name_;
   Grid grid_;
   NodeVectors rest_;
+  SingleVectors restSingle_;
 };
 
 LatticeHessian::LatticeHessian(const LatticeTerm& term)
-    : term_(term), rest_(term.grid().nodes()), moved_(term.grid().nodes()) {
-  take(term.rest(), term.rest()[0], rest_);
-}
+    : term_(term), rest_(term.restSingle()), moved_(term.grid().nodes()) {}
 
 void LatticeHessian::linearise(const NodeVectors& positions, bool projected) {
   const NodeVectors& rest = term_.rest();
@@ -261,15 +328,14 @@ void LatticeHessian::multiplySingle(const SingleVectors& v, SingleVectors& y) co
     std::vector<float> work(3 * columns);
     const Row<float> pull{&work[0], &work[columns], &work[2 * columns]};
     grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
-      if (curvatureProducts(springs(r, entry), projected_, rowOf(v, r.near), rowOf(v, r.far), pull))
+      if (curvatureProducts(springs(r, entry), projected_, rowOf(v, r.near), rowOf(v, r.far), rowOf(y, r.near), pull))
         for (std::size_t i = 0; i < r.count; ++i)
           if (isDegenerate(r, i)) {
             const Vec3 p = degenerateBlock(r, entry, i) * (v[r.far + i] - v[r.near + i]);
             pull.x[i] = float(p.x), pull.y[i] = float(p.y), pull.z[i] = float(p.z);
+            y.set(r.near + i, y[r.near + i] - p);
           }
-      const ConstRow<float> pulled{pull.x, pull.y, pull.z};
-      addRow(r.count, pulled, -1, rowOf(y, r.near));
-      addRow(r.count, pulled, 1, rowOf(y, r.far));
+      addRow(r.count, constant(pull), rowOf(y, r.far));
     });
   });
 }

@@ -27,12 +27,12 @@ PECTORA_INLINE Curvature curvatureOf(float ux, float uy, float uz, float dx0, fl
 
 }  // namespace
 
-PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> pull, RowSums sums) {
+PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums<double> sums) {
   const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const double *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
   const double *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
   const double *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
-  double *px = pull.x, *py = pull.y, *pz = pull.z;
+  double *gx = gradient.x, *gy = gradient.y, *gz = gradient.z, *px = pull.x, *py = pull.y, *pz = pull.z;
   double *energy = sums.twiceEnergy, *largest = sums.largest, *degenerate = sums.degenerate;
   const double stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
   const std::size_t count = springs.count;
@@ -45,11 +45,46 @@ PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> pu
     const double tension = (longer < 0 ? compressed : stretched) * longer;
     const bool isDegenerate = l <= kDegenerate * l0;
     const double scale = (isDegenerate ? 0.0 : tension) / (isDegenerate ? 1.0 : l);
-    px[i] = scale * dx, py[i] = scale * dy, pz[i] = scale * dz;
+    const double x = scale * dx, y = scale * dy, z = scale * dz;
+    px[i] = x, py[i] = y, pz[i] = z;
+    gx[i] -= x, gy[i] -= y, gz[i] -= z;
     energy[i] += tension * longer;
     const double size = std::abs(tension);
     largest[i] = largest[i] < size ? size : largest[i];
     degenerate[i] = isDegenerate ? 1.0 : degenerate[i];
+  }
+}
+
+PECTORA_WIDE void springForces(const RowSprings<float>& springs, Row<float> gradient, Row<float> pull, RowSums<float> sums) {
+  const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
+  const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
+  const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
+  const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
+  float *gx = gradient.x, *gy = gradient.y, *gz = gradient.z, *px = pull.x, *py = pull.y, *pz = pull.z;
+  float *energy = sums.twiceEnergy, *largest = sums.largest, *degenerate = sums.degenerate;
+  const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
+  const std::size_t count = springs.count;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
+    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
+    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
+    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
+    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
+    // l^2 - l0^2 without loss of digits; then 1 - l0 / l = growth / (l^2 + l l0), and (l - l0)^2 = growth^2 / (l + l0)^2.
+    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
+    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
+    const float product = std::sqrt(squared * squared0);
+    const float below = isDegenerate ? 1.0f : squared + product, sum = isDegenerate ? 1.0f : squared + squared0 + 2 * product;
+    const float share = k * growth / (below * sum);
+    const float scale = share * sum, twice = share * growth * below;
+    const float x = scale * dx, y = scale * dy, z = scale * dz;
+    px[i] = x, py[i] = y, pz[i] = z;
+    gx[i] -= x, gy[i] -= y, gz[i] -= z;
+    energy[i] += twice;
+    const float size = k * twice;
+    largest[i] = largest[i] < size ? size : largest[i];
+    degenerate[i] = isDegenerate ? 1.0f : degenerate[i];
   }
 }
 
@@ -71,18 +106,32 @@ PECTORA_WIDE void springEnergies(const RowSprings<double>& springs, double* twic
   }
 }
 
-PECTORA_WIDE void addRow(std::size_t count, ConstRow<double> source, double sign, Row<double> target) {
+PECTORA_WIDE void addRow(std::size_t count, ConstRow<double> source, Row<double> target) {
   const double *sx = source.x, *sy = source.y, *sz = source.z;
   double *tx = target.x, *ty = target.y, *tz = target.z;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) tx[i] += sign * sx[i], ty[i] += sign * sy[i], tz[i] += sign * sz[i];
+  for (std::size_t i = 0; i < count; ++i) tx[i] += sx[i], ty[i] += sy[i], tz[i] += sz[i];
 }
 
-PECTORA_WIDE void addRow(std::size_t count, ConstRow<float> source, float sign, Row<float> target) {
+PECTORA_WIDE void addRow(std::size_t count, ConstRow<float> source, Row<float> target) {
   const float *sx = source.x, *sy = source.y, *sz = source.z;
   float *tx = target.x, *ty = target.y, *tz = target.z;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) tx[i] += sign * sx[i], ty[i] += sign * sy[i], tz[i] += sign * sz[i];
+  for (std::size_t i = 0; i < count; ++i) tx[i] += sx[i], ty[i] += sy[i], tz[i] += sz[i];
+}
+
+PECTORA_WIDE void addRow(std::size_t count, ConstRow<float> source, Row<double> target) {
+  const float *sx = source.x, *sy = source.y, *sz = source.z;
+  double *tx = target.x, *ty = target.y, *tz = target.z;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) tx[i] += double(sx[i]), ty[i] += double(sy[i]), tz[i] += double(sz[i]);
+}
+
+PECTORA_WIDE void subtractRows(std::size_t count, ConstRow<double> a, ConstRow<double> b, Row<float> target) {
+  const double *ax = a.x, *ay = a.y, *az = a.z, *bx = b.x, *by = b.y, *bz = b.z;
+  float *tx = target.x, *ty = target.y, *tz = target.z;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) tx[i] = float(ax[i] - bx[i]), ty[i] = float(ay[i] - by[i]), tz[i] = float(az[i] - bz[i]);
 }
 
 PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature) {
@@ -105,13 +154,14 @@ PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projec
   return degenerate != 0;
 }
 
-PECTORA_WIDE bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> pull) {
+PECTORA_WIDE bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> product,
+                                    Row<float> pull) {
   const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
   const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
   const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
   const float *hx = vNear.x, *hy = vNear.y, *hz = vNear.z, *gx = vFar.x, *gy = vFar.y, *gz = vFar.z;
-  float *px = pull.x, *py = pull.y, *pz = pull.z;
+  float *qx = product.x, *qy = product.y, *qz = product.z, *px = pull.x, *py = pull.y, *pz = pull.z;
   const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
   const float floor = projected ? 0 : -INFINITY;
   const std::size_t count = springs.count;
@@ -122,7 +172,9 @@ PECTORA_WIDE bool curvatureProducts(const RowSprings<float>& springs, bool proje
                                     stretched, compressed, floor);
     const float vx = gx[i] - hx[i], vy = gy[i] - hy[i], vz = gz[i] - hz[i];
     const float along = c.b * (c.dx * vx + c.dy * vy + c.dz * vz);
-    px[i] = c.a * vx + along * c.dx, py[i] = c.a * vy + along * c.dy, pz[i] = c.a * vz + along * c.dz;
+    const float x = c.a * vx + along * c.dx, y = c.a * vy + along * c.dy, z = c.a * vz + along * c.dz;
+    px[i] = x, py[i] = y, pz[i] = z;
+    qx[i] -= x, qy[i] -= y, qz[i] -= z;
     degenerate |= c.isDegenerate;
   }
   return degenerate != 0;

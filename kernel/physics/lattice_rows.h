@@ -18,18 +18,26 @@ struct RowSprings {
   T stiffness, compression;
 };
 
-/// What a row adds up, column by column: twice the energy, the largest force, and 1 where a spring has no direction.
+/// What a row adds up, column by column: twice the energy, the largest force (in single precision its square), and 1 where a spring has
+/// no direction.
+template <class T>
 struct RowSums {
-  double *twiceEnergy, *largest, *degenerate;
+  T *twiceEnergy, *largest, *degenerate;
 };
 
-/// Forces on the near ends; those on the far ends are opposite. A degenerate spring gets none. `pull` is overwritten.
-void springForces(const RowSprings<double>& springs, Row<double> pull, RowSums sums);
+/// Subtracts the forces on the near ends from `gradient`; those on the far ends are opposite, and written to `pull`. A degenerate
+/// spring gets none.
+void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums<double> sums);
+/// The same in single precision: forces are right to about 1e-6 of themselves, however small, as lengths grow by what their ends have moved.
+void springForces(const RowSprings<float>& springs, Row<float> gradient, Row<float> pull, RowSums<float> sums);
 /// The energy alone.
 void springEnergies(const RowSprings<double>& springs, double* twiceEnergy);
-/// target += sign * source.
-void addRow(std::size_t count, ConstRow<double> source, double sign, Row<double> target);
-void addRow(std::size_t count, ConstRow<float> source, float sign, Row<float> target);
+/// target += source.
+void addRow(std::size_t count, ConstRow<double> source, Row<double> target);
+void addRow(std::size_t count, ConstRow<float> source, Row<float> target);
+void addRow(std::size_t count, ConstRow<float> source, Row<double> target);
+/// target = a - b.
+void subtractRows(std::size_t count, ConstRow<double> a, ConstRow<double> b, Row<float> target);
 
 /// A spring shorter than this part of its rest length has no direction of its own in single precision.
 inline constexpr float kDegenerateSingle = 1e-5f;
@@ -41,7 +49,8 @@ struct RowCurvature {
 };
 /// Returns whether there is a degenerate spring.
 bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature);
-/// pull = H (vFar - vNear). A degenerate spring gives none; returns whether there is one.
-bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> pull);
+/// pull = H (vFar - vNear), and `product` of the near ends is less by it. A degenerate spring gives none; returns whether there is one.
+bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> product,
+                       Row<float> pull);
 
 }  // namespace pectora::lattice

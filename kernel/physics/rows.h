@@ -23,6 +23,12 @@ struct Row {
   T *x, *y, *z;
 };
 
+/// The vectors from `i` on, and the same to be read only.
+template <class T>
+Row<T> at(Row<T> row, std::size_t i) { return {row.x + i, row.y + i, row.z + i}; }
+template <class T>
+ConstRow<T> constant(Row<T> row) { return {row.x, row.y, row.z}; }
+
 /// The vectors from `node` on.
 inline ConstRow<double> rowOf(const NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }
 inline Row<double> rowOf(NodeVectors& v, std::size_t node) { return {&v.x[node], &v.y[node], &v.z[node]}; }

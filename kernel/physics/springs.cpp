@@ -1,10 +1,12 @@
 #include "kernel/physics/springs.h"
 
 #include "kernel/physics/hessian.h"
+#include "kernel/physics/rows.h"
 #include "kernel/physics/workers.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace pectora {
 namespace {
@@ -12,35 +14,53 @@ namespace {
 // A spring shorter than this part of its rest length has no direction of its own.
 constexpr double kDegenerate = 1e-12;
 
-// Force on the near end of a spring and its energy.
-struct SpringPull {
-  Vec3 force;
-  double energy;
-  double magnitude;
+// Three numbers that need no more digits.
+struct SingleVec3 {
+  float x, y, z;
+  explicit SingleVec3(Vec3 v = {}) : x(float(v.x)), y(float(v.y)), z(float(v.z)) {}
+  operator Vec3() const { return {double(x), double(y), double(z)}; }
 };
 
-SpringPull pull(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness) {
-  const Vec3 d = far - near;
-  const double length = norm(d);
-  const Vec3 direction = length > kDegenerate * restLength && length > 0 ? d / length : restDirection;
-  const double tension = stiffness * (length - restLength);
-  return {direction * tension, 0.5 * tension * (length - restLength), std::abs(tension)};
+// Some springs side by side.
+struct Batch {
+  static constexpr std::size_t kSize = 64;
+  double x[kSize], y[kSize], z[kSize];   // from end to end; then the force on the near end
+  double stiffness[kSize], restLength[kSize], length[kSize], tension[kSize], energy[kSize];
+
+  void set(std::size_t i, Vec3 d, double k, double l0) { x[i] = d.x, y[i] = d.y, z[i] = d.z, stiffness[i] = k, restLength[i] = l0; }
+  void pull(std::size_t count);
+};
+
+PECTORA_WIDE void Batch::pull(std::size_t count) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double l = std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]), longer = l - restLength[i], t = stiffness[i] * longer;
+    const double scale = t / l;
+    x[i] *= scale, y[i] *= scale, z[i] *= scale;
+    length[i] = l, tension[i] = t, energy[i] = 0.5 * t * longer;
+  }
 }
+
+// A spring as the term keeps it; there are several for every point of the pleura.
+struct KeptSpring {
+  std::uint32_t a, b;
+  double stiffnessNPerMm, restLength;
+};
 
 // Second derivative of one spring: a I + m m^T.
 struct SpringCurvature {
-  Vec3 m;
-  double a;
+  SingleVec3 m;
+  float a = 0;
 };
 
-SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, Vec3 restDirection, double stiffness, bool projected) {
+SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, const SingleVec3& restDirection, double stiffness, bool projected) {
   const Vec3 d = far - near;
   const double length = norm(d);
   if (!(length > kDegenerate * restLength && length > 0))
-    return restLength > 0 ? SpringCurvature{restDirection * std::sqrt(stiffness), 0} : SpringCurvature{{}, stiffness};
+    return restLength > 0 ? SpringCurvature{SingleVec3(Vec3(restDirection) * std::sqrt(stiffness)), 0} : SpringCurvature{{}, float(stiffness)};
   const double across = stiffness * (1 - restLength / length);
   const double a = projected ? std::max(0.0, across) : across;
-  return {d * (std::sqrt(stiffness - a) / length), a};
+  return {SingleVec3(d * (std::sqrt(stiffness - a) / length)), float(a)};
 }
 
 // Springs that hold a free node to a driven one come first, node by node, so that pieces of them share no free node and can
@@ -48,24 +68,25 @@ SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, Vec3 restDir
 class SpringTerm final : public Term {
  public:
   SpringTerm(std::string name, const System& system, std::vector<NodeSpring> springs)
-      : name_(std::move(name)), freeNodes_(system.freeNodes), springs_(std::move(springs)) {
-    for (NodeSpring& s : springs_)
-      if (s.a >= freeNodes_) std::swap(s.a, s.b);
-    const auto holds = [&](const NodeSpring& s) { return s.a < freeNodes_ && s.b >= freeNodes_; };
-    std::erase_if(springs_, [&](const NodeSpring& s) { return s.a >= freeNodes_; });
-    const auto end = std::stable_partition(springs_.begin(), springs_.end(), holds);
-    std::stable_sort(springs_.begin(), end, [](const NodeSpring& s, const NodeSpring& t) { return s.a < t.a; });
-    held_ = std::size_t(end - springs_.begin());
+      : name_(std::move(name)) {
+    const std::size_t free = system.freeNodes;
+    for (NodeSpring& s : springs)
+      if (s.a >= free) std::swap(s.a, s.b);
+    std::erase_if(springs, [&](const NodeSpring& s) { return s.a >= free; });
+    const auto end = std::stable_partition(springs.begin(), springs.end(), [&](const NodeSpring& s) { return s.b >= free; });
+    std::stable_sort(springs.begin(), end, [](const NodeSpring& s, const NodeSpring& t) { return s.a < t.a; });
+    held_ = std::size_t(end - springs.begin());
+    springs_.reserve(springs.size());
+    restDirections_.reserve(springs.size());
+    for (const NodeSpring& s : springs) {
+      const Vec3 d = system.rest[s.b] - system.rest[s.a];
+      springs_.push_back({std::uint32_t(s.a), std::uint32_t(s.b), s.stiffnessNPerMm, norm(d)});
+      // A spring of no length at rest pulls towards its other end in any direction.
+      restDirections_.push_back(SingleVec3(normalized(d)));
+    }
     for (std::size_t i = 0; i < held_; ++i)
       if (pieces_.empty() || (i >= pieces_.back() + kPiece && springs_[i].a != springs_[i - 1].a)) pieces_.push_back(i);
     pieces_.push_back(held_);
-
-    for (const NodeSpring& s : springs_) {
-      const Vec3 d = system.rest[s.b] - system.rest[s.a];
-      restLengths_.push_back(norm(d));
-      // A spring of no length at rest pulls towards its other end in any direction.
-      restDirections_.push_back(normalized(d));
-    }
   }
 
   std::string name() const override { return name_; }
@@ -73,7 +94,11 @@ class SpringTerm final : public Term {
   double energy(const NodeVectors& positions) const override {
     std::vector<double> energies(pieces());
     forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) energies[piece] += at(i, positions).energy;
+      for (std::size_t i = begin; i < end; ++i) {
+        const KeptSpring& s = springs_[i];
+        const double longer = distance(positions[s.b], positions[s.a]) - s.restLength;
+        energies[piece] += 0.5 * s.stiffnessNPerMm * longer * longer;
+      }
     });
     double total = 0;
     for (const double e : energies) total += e;
@@ -83,12 +108,23 @@ class SpringTerm final : public Term {
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
     std::vector<double> energies(pieces()), largest(pieces());
     forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const SpringPull p = at(i, positions);
-        energies[piece] += p.energy;
-        largest[piece] = std::max(largest[piece], p.magnitude);
-        gradient.add(springs_[i].a, -p.force);
-        if (i >= held_) gradient.add(springs_[i].b, p.force);
+      for (std::size_t first = begin; first < end; first += Batch::kSize) {
+        const std::size_t count = std::min(Batch::kSize, end - first);
+        Batch batch;
+        for (std::size_t i = 0; i < count; ++i) {
+          const KeptSpring& s = springs_[first + i];
+          batch.set(i, positions[s.b] - positions[s.a], s.stiffnessNPerMm, s.restLength);
+        }
+        batch.pull(count);
+        for (std::size_t i = 0; i < count; ++i) {
+          const KeptSpring& s = springs_[first + i];
+          const bool isDegenerate = !(batch.length[i] > kDegenerate * s.restLength && batch.length[i] > 0);
+          const Vec3 force = isDegenerate ? Vec3(restDirections_[first + i]) * batch.tension[i] : Vec3{batch.x[i], batch.y[i], batch.z[i]};
+          energies[piece] += batch.energy[i];
+          largest[piece] = std::max(largest[piece], std::abs(batch.tension[i]));
+          gradient.add(s.a, -force);
+          if (first + i >= held_) gradient.add(s.b, force);
+        }
       }
     });
     double total = 0;
@@ -101,7 +137,7 @@ class SpringTerm final : public Term {
 
   void addStiffnessBound(std::vector<double>& bound) const override {
     for (std::size_t i = 0; i < springs_.size(); ++i) {
-      const NodeSpring& s = springs_[i];
+      const KeptSpring& s = springs_[i];
       bound[s.a] += (i < held_ ? 1 : 2) * s.stiffnessNPerMm;
       if (i >= held_) bound[s.b] += 2 * s.stiffnessNPerMm;
     }
@@ -112,15 +148,15 @@ class SpringTerm final : public Term {
   bool hasSprings() const override { return true; }
   void forEachSpring(const std::function<void(const Spring&)>& visit) const override {
     for (std::size_t i = 0; i < springs_.size(); ++i)
-      visit({springs_[i].a, springs_[i].b, springs_[i].stiffnessNPerMm, restLengths_[i], 1});
+      visit({springs_[i].a, springs_[i].b, springs_[i].stiffnessNPerMm, springs_[i].restLength, 1});
   }
 
-  const std::vector<NodeSpring>& springs() const { return springs_; }
+  const std::vector<KeptSpring>& springs() const { return springs_; }
   /// How many springs, the first ones, hold a free node to a driven one.
   std::size_t held() const { return held_; }
   SpringCurvature curvature(std::size_t i, const NodeVectors& positions, bool projected) const {
-    return curvatureOf(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
-                       springs_[i].stiffnessNPerMm, projected);
+    const KeptSpring& s = springs_[i];
+    return curvatureOf(positions[s.a], positions[s.b], s.restLength, restDirections_[i], s.stiffnessNPerMm, projected);
   }
 
   /// The pieces of the springs that hold, and one more with the others.
@@ -135,17 +171,11 @@ class SpringTerm final : public Term {
  private:
   static constexpr std::size_t kPiece = 4096;
 
-  SpringPull at(std::size_t i, const NodeVectors& positions) const {
-    return pull(positions[springs_[i].a], positions[springs_[i].b], restLengths_[i], restDirections_[i],
-                springs_[i].stiffnessNPerMm);
-  }
-
   std::string name_;
-  std::size_t freeNodes_, held_ = 0;
-  std::vector<NodeSpring> springs_;
+  std::size_t held_ = 0;
+  std::vector<KeptSpring> springs_;
+  std::vector<SingleVec3> restDirections_;
   std::vector<std::size_t> pieces_;   // first springs, and the end of those that hold
-  std::vector<double> restLengths_;
-  std::vector<Vec3> restDirections_;
 };
 
 // What the springs that hold do to a free node adds up to one block a node, as long as the driven ends stand still.
@@ -194,7 +224,8 @@ class SpringHessian final : public Hessian {
 
  private:
   Symmetric3 block(std::size_t i) const {
-    const auto& [m, a] = curvatures_[i];
+    const Vec3 m = curvatures_[i].m;
+    const double a = double(curvatures_[i].a);
     return {a + m.x * m.x, m.x * m.y, m.x * m.z, a + m.y * m.y, m.y * m.z, a + m.z * m.z};
   }
   template <class Vectors>
@@ -204,7 +235,7 @@ class SpringHessian final : public Hessian {
       y.set(node, y[node] + heldBlocks_[n] * v[node]);
     }
     for (std::size_t i = term_.held(); i < curvatures_.size(); ++i) {
-      const NodeSpring& s = term_.springs()[i];
+      const KeptSpring& s = term_.springs()[i];
       const Vec3 pull = block(i) * (v[s.b] - v[s.a]);
       y.set(s.a, y[s.a] - pull);
       y.set(s.b, y[s.b] + pull);

@@ -20,11 +20,12 @@ void NodeVectors::clear() {
 
 std::unique_ptr<Hessian> Term::makeHessian() const { return nullptr; }
 
-double System::evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const {
+double System::evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce, Precision precision) const {
   gradient.clear();
   largestForce = 0;
   double total = 0;
-  for (const auto& term : terms) total += term->evaluate(positions, gradient, largestForce);
+  for (const auto& term : terms)
+    total += precision == Precision::full ? term->evaluate(positions, gradient, largestForce) : term->evaluateRoughly(positions, gradient, largestForce);
   return total;
 }
 

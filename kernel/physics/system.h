@@ -38,6 +38,9 @@ struct SingleVectors {
 
 class Hessian;
 
+/// How right forces are to be: to the last digits, or to about 1e-5 of the largest one.
+enum class Precision { full, rough };
+
 /// A spring between two nodes: energy 1/2 k (l - l0)^2, with k multiplied by `compression` while l < l0.
 struct Spring {
   std::size_t a = 0, b = 0;
@@ -55,6 +58,10 @@ class Term {
   /// means nothing. Also raises `largestForce` to the largest force of a
   /// single spring or element, the scale of the residual. The result does not depend on the number of threads.
   virtual double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const = 0;
+  /// The same with errors of up to about 1e-5 of the largest force, if that is faster: in single precision.
+  virtual double evaluateRoughly(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const {
+    return evaluate(positions, gradient, largestForce);
+  }
   /// Adds to each node a bound of its stiffness: the sum over its springs of 2 k, or k where the other end is driven
   /// (science: Gershgorin bound of the Hessian's rows), N/mm.
   virtual void addStiffnessBound(std::vector<double>& bound) const = 0;
@@ -88,7 +95,7 @@ struct System {
   std::size_t node(int l, std::size_t point) const { return std::size_t(l) * points() + point; }
   std::size_t anchorNode(std::size_t anchor) const { return node(layers, anchor); }
   /// Energy of all terms; overwrites `gradient`.
-  double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const;
+  double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce, Precision precision = Precision::full) const;
   double energy(const NodeVectors& positions) const;
   std::vector<double> stiffnessBound() const;
   /// "skin point at row 3, column 17", for messages.

@@ -16,11 +16,12 @@ class Lbfgs final : public Minimiser {
   Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) override;
 
  private:
-  // One step remembered: s = change of place, y = change of gradient.
+  // One step remembered: s = change of place, y = change of gradient, my = M^-1 y.
   struct Pair {
-    SingleVectors s, y;
+    SingleVectors s, y, my;
     double inverseSy;
   };
+  void begin(const NodeVectors& gradient, std::size_t free);
   void findDirection(const NodeVectors& gradient, std::size_t free);
   void remember(double step, const NodeVectors& gradientBefore, const NodeVectors& gradient, std::size_t free);
 
@@ -29,6 +30,7 @@ class Lbfgs final : public Minimiser {
   std::deque<Pair> pairs_;
   double scale_ = 1;   // of the metric
   SingleVectors q_, direction_;
+  SingleVectors metricGradient_, spare_;   // M^-1 gradient, so that the metric is applied once an iteration
 };
 
 }  // namespace pectora

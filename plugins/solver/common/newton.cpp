@@ -60,6 +60,8 @@ void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVecto
   for (std::size_t i = objective.system().freeNodes; i < x.size(); ++i) moved.set(i, next[i] - x[i]);
   hessian_->multiply(moved, force);
   solve(objective, force, forcing, poll);
+  contraction_ = usesMetric(objective) ? single_.contraction() : double_.contraction();
+  if (getenv("DBG")) fprintf(stderr, "predict products %d contr %g way %g\n", products(), contraction_, longest(single_.solution(), objective.system().freeNodes));
   axpy(1, direction_, next, objective.system().freeNodes);
 }
 
@@ -79,7 +81,11 @@ Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation&
     const bool projected = !e.isWithin(trueBelow);
     linearise(objective, x, projected);
     solve(objective, e.gradient, forcing, watch.poll);
-    if (searchLine(objective, x, e, direction_, 1, trial) > 0) continue;
+    if (const double step = searchLine(objective, x, e, direction_, 1, trial); step > 0) {
+      // The step is half of the way to the minimum at the least, and there is less to go than it was long.
+      if (step == 1 && longest(direction_, free) <= limits.accuracy) return Outcome::converged;
+      continue;
+    }
     if (!projected) {
       trueBelow = 0.1 * e.relativeResidual();
       continue;

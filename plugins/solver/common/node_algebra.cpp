@@ -30,7 +30,8 @@ double dot(const A* a, const B* b, std::size_t count) {
 
 template <class X, class Y>
 void axpy(double s, const X* x, Y* y, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) y[i] = Y(double(y[i]) + s * double(x[i]));
+  const Y factor = Y(s);
+  for (std::size_t i = 0; i < count; ++i) y[i] += factor * Y(x[i]);
 }
 
 }  // namespace
@@ -77,11 +78,14 @@ template void axpy(double, const SingleVectors&, SingleVectors&, std::size_t);
 template void scaleAndAdd(const NodeVectors&, double, NodeVectors&, std::size_t);
 template void scaleAndAdd(const SingleVectors&, double, SingleVectors&, std::size_t);
 
-double longest(const SingleVectors& v, std::size_t count) {
-  float squared = 0;
+template <class Vectors>
+double longest(const Vectors& v, std::size_t count) {
+  typename decltype(v.x)::value_type squared = 0;
   for (std::size_t i = 0; i < count; ++i) squared = std::max(squared, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
   return std::sqrt(double(squared));
 }
+template double longest(const NodeVectors&, std::size_t);
+template double longest(const SingleVectors&, std::size_t);
 
 double negligibleForce(const System& system) {
   const std::vector<double> bound = system.stiffnessBound();

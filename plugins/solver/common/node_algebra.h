@@ -18,7 +18,8 @@ template <class Vectors>
 void scaleAndAdd(const Vectors& x, double s, Vectors& y, std::size_t count);
 
 /// The length of the longest vector of nodes [0, count).
-double longest(const SingleVectors& v, std::size_t count);
+template <class Vectors>
+double longest(const Vectors& v, std::size_t count);
 
 /// The largest force on a free node, and where. Infinite if one is not finite.
 struct Residual {

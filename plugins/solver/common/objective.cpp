@@ -8,7 +8,7 @@ namespace pectora {
 void Objective::evaluate(const NodeVectors& x, Evaluation& e) const {
   ++evaluations_;
   if (e.gradient.size() != x.size()) e.gradient = NodeVectors(x.size());
-  e.energy = e.value = system_.evaluate(x, e.gradient, e.largestForce);
+  e.energy = e.value = system_.evaluate(x, e.gradient, e.largestForce, precision_);
   if (inertia_) {
     for (std::size_t i = 0; i < system_.freeNodes; ++i) {
       const Vec3 away = x[i] - inertia_->target[i];
@@ -27,6 +27,7 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
   const double slope = dot(e.gradient, d, count);
   if (!(slope < 0)) return 0;
   place = x;
+  const double rounding = (objective.precision() == Precision::full ? 1e-13 : 1e-6) * std::abs(e.value);
   double step = firstStep, before = 0;
   for (int halving = 0; halving < 40; ++halving) {
     axpy(step - before, d, place, count);
@@ -34,7 +35,7 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
     objective.evaluate(place, trial);
     const bool isFinite = std::isfinite(trial.value) && std::isfinite(trial.residual.force);
     const bool falls = trial.value <= e.value + 1e-4 * step * slope;
-    const bool flattens = trial.value <= e.value + 1e-13 * std::abs(e.value) && std::abs(dot(trial.gradient, d, count)) <= 0.9 * -slope;
+    const bool flattens = trial.value <= e.value + rounding && std::abs(dot(trial.gradient, d, count)) <= 0.9 * -slope;
     if (isFinite && (falls || flattens)) {
       std::swap(x, place);
       std::swap(e, trial);

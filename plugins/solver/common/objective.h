@@ -33,6 +33,9 @@ class Objective {
   /// Null: no inertia. Must stay alive.
   void setInertia(const Inertia* inertia) { inertia_ = inertia; }
   const Inertia* inertia() const { return inertia_; }
+  /// What evaluations are worth from now on; full at first.
+  void setPrecision(Precision precision) { precision_ = precision; }
+  Precision precision() const { return precision_; }
   void evaluate(const NodeVectors& x, Evaluation& e) const;
   /// How often it was evaluated.
   int evaluations() const { return evaluations_; }
@@ -41,6 +44,7 @@ class Objective {
   const System& system_;
   double negligible_;
   const Inertia* inertia_ = nullptr;
+  Precision precision_ = Precision::full;
   mutable int evaluations_ = 0;
 };
 
@@ -61,6 +65,7 @@ class Minimiser {
     double tolerance = 1e-4;
     int iterations = 100;
     double accuracy = 0;   ///< mm; if above 0, being about so near the minimum will do as well
+    double contraction = 0.95;   ///< what one iteration is expected to leave of the distance
   };
   /// `x` is where to begin and becomes the end, which is always finite and no higher than the beginning; `e` is the
   /// objective there. `iterations` is raised.

@@ -14,6 +14,9 @@ namespace {
 // Between load steps it is enough to be near.
 constexpr double kLooseTolerance = 1e-2;
 constexpr double kLeastPartOfStep = 1.0 / 4;
+constexpr double kLooseForcing = 0.5;
+// Single precision errs by less than a thousandth of this, mm, so that it is enough where such an accuracy is asked for.
+constexpr double kRoughAccuracy = 0.01;
 // A step may end this far from its prediction, as a part of the bar's movement.
 constexpr double kOffCourse = 0.5;
 
@@ -33,12 +36,17 @@ class QuasiStatic final : public Session {
 
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
     Objective objective(system_);
+    if (acceleration_.accuracy >= kRoughAccuracy) objective.setPrecision(Precision::rough);
     Solution solution;
     Evaluation end;
     follow(objective, Movement(system_, drive, start), solution, end, host);
     if (start && solution.status != SolveStatus::converged) {
       host.info("the given start did not lead to rest; beginning from rest");
       follow(objective, Movement(system_, drive, nullptr), solution, end, host);
+    }
+    if (objective.precision() == Precision::rough) {
+      objective.setPrecision(Precision::full);
+      objective.evaluate(solution.positions, end);
     }
     solution.forceEvaluations = objective.evaluations();
     solution.residual = end.residual.force;
@@ -49,7 +57,7 @@ class QuasiStatic final : public Session {
 
  private:
   // Steps along the movement. What the solution has counted before is kept.
-  void follow(const Objective& objective, const Movement& movement, Solution& solution, Evaluation& end, Host& host) {
+  void follow(Objective& objective, const Movement& movement, Solution& solution, Evaluation& end, Host& host) {
     solution.positions = movement.beginning();
     solution.message.clear();
     NodeVectors& x = solution.positions;
@@ -64,7 +72,9 @@ class QuasiStatic final : public Session {
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
       NodeVectors trial = x;
       movement.apply(next, trial);
-      if (predictor_) predictor_->predict(objective, x, trial, acceleration_.forcing, [&] { host.checkCancel(); });
+      // A prediction that nothing is judged by may be rougher.
+      const double forcing = movement.isFromStart() ? std::max(kLooseForcing, acceleration_.forcing) : acceleration_.forcing;
+      if (predictor_) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
       const NodeVectors predicted = trial;
       const int left = most - solution.iterations;
       const double tolerance = std::max(settings_.tolerance, kLooseTolerance);
@@ -98,7 +108,7 @@ class QuasiStatic final : public Session {
       solution.message = "the energy falls no further; the largest force stays at the " + system_.nodeName(end.residual.node);
   }
 
-  Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& end, double tolerance, int iterations, double part,
+  Outcome minimise(Objective& objective, NodeVectors& x, Evaluation& end, double tolerance, int iterations, double part,
                    Solution& solution, Host& host) {
     Watch watch;
     double before = INFINITY;   // the objective before the last step
@@ -112,7 +122,16 @@ class QuasiStatic final : public Session {
       host.progress(progress(now.relativeResidual(), tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
     };
-    return minimiser_->minimise(objective, x, end, {tolerance, iterations, acceleration_.accuracy}, solution.iterations, watch);
+    Minimiser::Limits limits{tolerance, iterations, acceleration_.accuracy, predictor_ ? predictor_->contraction() : Minimiser::Limits().contraction};
+    const int first = solution.iterations;
+    const Outcome outcome = minimiser_->minimise(objective, x, end, limits, solution.iterations, watch);
+    const int left = iterations - (solution.iterations - first);
+    if (outcome != Outcome::stalled || objective.precision() == Precision::full || left <= 0) return outcome;
+    // Rounding may have hidden the way down.
+    objective.setPrecision(Precision::full);
+    before = INFINITY;
+    limits.iterations = left;
+    return minimiser_->minimise(objective, x, end, limits, solution.iterations, watch);
   }
 
   // Converged by nearness rather than by the residual: then that is what was asked for.

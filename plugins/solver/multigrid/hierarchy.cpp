@@ -17,7 +17,7 @@ constexpr float kLowest = 0.25f;
 constexpr int kPowerSteps = 8;
 // The finest levels cost the most and gain the least from seeing each other's work: additive, a cycle needs no product with
 // their matrices, only with their diagonals.
-constexpr std::size_t kAdditiveLevels = 2;
+static const std::size_t kAdditiveLevels = getenv("ADD") ? std::size_t(atoi(getenv("ADD"))) : 2;
 
 int coarser(int count) { return count > kCoarsest ? count / 2 + 1 : count; }
 
