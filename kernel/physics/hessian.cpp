@@ -21,6 +21,9 @@ class SystemHessian final : public Hessian {
   void forEachCoupling(const Coupling& visit) const override {
     for (const auto& part : parts_) part->forEachCoupling(visit);
   }
+  void forEachCouplingRun(const CouplingRun& run, const Coupling& visit) const override {
+    for (const auto& part : parts_) part->forEachCouplingRun(run, visit);
+  }
 
  private:
   std::vector<std::unique_ptr<Hessian>> parts_;

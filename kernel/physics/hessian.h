@@ -10,6 +10,7 @@ struct Symmetric3 {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
   Symmetric3& operator+=(const Symmetric3& b);
+  Symmetric3 operator-() const { return {-xx, -xy, -xz, -yy, -yz, -zz}; }
   /// Adds s times the identity.
   void addIdentity(double s) { xx += s, yy += s, zz += s; }
   Vec3 operator*(Vec3 v) const {
@@ -44,6 +45,11 @@ class Hessian {
   /// several parts. The order is always the same.
   using Coupling = std::function<void(std::size_t a, std::size_t b, const Matrix3& block)>;
   virtual void forEachCoupling(const Coupling& visit) const = 0;
+  /// The same, faster where many blocks join nodes that lie side by side: run(a, b, count, entries) shows those of (a + i, b + i) for i below
+  /// count, entry (j, k) of them at entries[3 j + k][i]. Runs may come from several threads at once, but then their rows of the grid lie
+  /// so far apart that two rows between them belong to neither. What makes no runs is shown to `visit`.
+  using CouplingRun = std::function<void(std::size_t a, std::size_t b, std::size_t count, const float* const entries[9])>;
+  virtual void forEachCouplingRun(const CouplingRun& /*run*/, const Coupling& visit) const { forEachCoupling(visit); }
 };
 
 /// The Hessian of all terms of a system; null if a term has none.

@@ -20,7 +20,7 @@ class Grid {
   Grid(const System& system, std::vector<StencilSpring> stencil)
       : rows_(system.rows), columns_(system.columns), layers_(system.layers), stencil_(std::move(stencil)) {
     for (const StencilSpring& s : stencil_) reach_ = std::max(reach_, std::abs(s.rows));
-    blockRows_ = std::max(blockRows_, 2 * reach_);
+    blockRows_ = std::max(blockRows_, 2 * reach_ + 2);   // two rows lie between what blocks at work at one time reach
     blocks_ = (std::size_t(rows_) + blockRows_ - 1) / blockRows_;
   }
 
@@ -104,12 +104,30 @@ class LatticeHessian final : public Hessian {
   void multiplySingle(const SingleVectors& v, SingleVectors& y) const override;
   void addDiagonal(std::vector<Symmetric3>& blocks) const override;
   void forEachCoupling(const Coupling& visit) const override;
+  void forEachCouplingRun(const CouplingRun& run, const Coupling& visit) const override;
 
  private:
   RowSprings<float> springs(const Grid::Run& run, std::size_t entry) const;
-  // Calls f(i, block) for the springs i of a run, with the second derivative of each.
-  template <class F>
-  void forEachBlock(const Grid::Run& run, std::size_t entry, std::vector<float>& work, F&& f) const;
+  // The blocks of a run's springs that join their ends.
+  class Blocks {
+   public:
+    explicit Blocks(std::size_t columns) : room_(6 * columns) {
+      for (std::size_t e = 0; e < 6; ++e) entries[e] = &room_[e * columns];
+    }
+    Symmetric3 operator[](std::size_t i) const {
+      const auto at = [&](int e) { return double(entries[e][i]); };
+      return {at(0), at(1), at(2), at(3), at(4), at(5)};
+    }
+    void set(std::size_t i, const Symmetric3& b) {
+      const double values[6] = {b.xx, b.xy, b.xz, b.yy, b.yz, b.zz};
+      for (int e = 0; e < 6; ++e) entries[e][i] = float(values[e]);
+    }
+    float* entries[6];   // xx xy xz yy yz zz
+
+   private:
+    std::vector<float> room_;
+  };
+  void fill(const Grid::Run& run, std::size_t entry, Blocks& blocks) const;
   // The second derivative of a spring that has no direction of its own.
   Symmetric3 degenerateBlock(const Grid::Run& run, std::size_t entry, std::size_t i) const;
   bool isDegenerate(const Grid::Run& run, std::size_t i) const;
@@ -340,39 +358,47 @@ void LatticeHessian::multiplySingle(const SingleVectors& v, SingleVectors& y) co
   });
 }
 
-template <class F>
-void LatticeHessian::forEachBlock(const Grid::Run& r, std::size_t entry, std::vector<float>& work, F&& f) const {
-  const std::size_t columns = term_.grid().columns();
-  work.resize(2 * columns);
-  float *as = &work[0], *bs = &work[columns];
-  const bool anyDegenerate = springCurvatures(springs(r, entry), projected_, {as, bs});
-  for (std::size_t i = 0; i < r.count; ++i) {
-    const Vec3 d = rest_[r.far + i] - rest_[r.near + i] + (moved_[r.far + i] - moved_[r.near + i]);
-    const double a = double(as[i]), b = double(bs[i]);
-    Symmetric3 block{a + b * d.x * d.x, b * d.x * d.y, b * d.x * d.z, a + b * d.y * d.y, b * d.y * d.z, a + b * d.z * d.z};
-    if (anyDegenerate && isDegenerate(r, i)) block = degenerateBlock(r, entry, i);
-    f(i, block);
-  }
+void LatticeHessian::fill(const Grid::Run& r, std::size_t entry, Blocks& blocks) const {
+  if (!springBlocks(springs(r, entry), projected_, blocks.entries)) return;
+  for (std::size_t i = 0; i < r.count; ++i)
+    if (isDegenerate(r, i)) blocks.set(i, -degenerateBlock(r, entry, i));
 }
 
-void LatticeHessian::addDiagonal(std::vector<Symmetric3>& blocks) const {
+void LatticeHessian::addDiagonal(std::vector<Symmetric3>& diagonal) const {
   const Grid& grid = term_.grid();
   grid.forEachBlock([&](std::size_t, int begin, int end) {
-    std::vector<float> work;
+    Blocks blocks(grid.columns());
     grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
-      forEachBlock(r, entry, work, [&](std::size_t i, const Symmetric3& block) {
-        blocks[r.near + i] += block;
-        blocks[r.far + i] += block;
-      });
+      fill(r, entry, blocks);
+      for (std::size_t i = 0; i < r.count; ++i) {
+        const Symmetric3 own = -blocks[i];
+        diagonal[r.near + i] += own;
+        diagonal[r.far + i] += own;
+      }
     });
   });
 }
 
 void LatticeHessian::forEachCoupling(const Coupling& visit) const {
-  std::vector<float> work;
+  Blocks blocks(term_.grid().columns());
   term_.grid().forEachRun([&](const Grid::Run& r, std::size_t entry) {
-    forEachBlock(r, entry, work, [&](std::size_t i, const Symmetric3& h) {
-      visit(r.near + i, r.far + i, {{{-h.xx, -h.xy, -h.xz}, {-h.xy, -h.yy, -h.yz}, {-h.xz, -h.yz, -h.zz}}});
+    fill(r, entry, blocks);
+    for (std::size_t i = 0; i < r.count; ++i) {
+      const Symmetric3 b = blocks[i];
+      visit(r.near + i, r.far + i, {{{b.xx, b.xy, b.xz}, {b.xy, b.yy, b.yz}, {b.xz, b.yz, b.zz}}});
+    }
+  });
+}
+
+void LatticeHessian::forEachCouplingRun(const CouplingRun& run, const Coupling&) const {
+  const Grid& grid = term_.grid();
+  grid.forEachBlock([&](std::size_t, int begin, int end) {
+    Blocks blocks(grid.columns());
+    float* const* e = blocks.entries;
+    const float* const entries[9] = {e[0], e[1], e[2], e[1], e[3], e[4], e[2], e[4], e[5]};
+    grid.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
+      fill(r, entry, blocks);
+      run(r.near, r.far, r.count, entries);
     });
   });
 }

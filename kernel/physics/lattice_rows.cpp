@@ -134,12 +134,12 @@ PECTORA_WIDE void subtractRows(std::size_t count, ConstRow<double> a, ConstRow<d
   for (std::size_t i = 0; i < count; ++i) tx[i] = float(ax[i] - bx[i]), ty[i] = float(ay[i] - by[i]), tz[i] = float(az[i] - bz[i]);
 }
 
-PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature) {
+PECTORA_WIDE bool springBlocks(const RowSprings<float>& springs, bool projected, float* const blocks[6]) {
   const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
   const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
   const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
-  float *as = curvature.a, *bs = curvature.b;
+  float *xx = blocks[0], *xy = blocks[1], *xz = blocks[2], *yy = blocks[3], *yz = blocks[4], *zz = blocks[5];
   const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
   const float floor = projected ? 0 : -INFINITY;
   const std::size_t count = springs.count;
@@ -148,7 +148,9 @@ PECTORA_WIDE bool springCurvatures(const RowSprings<float>& springs, bool projec
   for (std::size_t i = 0; i < count; ++i) {
     const Curvature c = curvatureOf(fx[i] - nx[i], fy[i] - ny[i], fz[i] - nz[i], fx0[i] - nx0[i], fy0[i] - ny0[i], fz0[i] - nz0[i],
                                     stretched, compressed, floor);
-    as[i] = c.a, bs[i] = c.b;
+    const float bx = c.b * c.dx, by = c.b * c.dy, bz = c.b * c.dz;
+    xx[i] = -(c.a + bx * c.dx), xy[i] = -bx * c.dy, xz[i] = -bx * c.dz;
+    yy[i] = -(c.a + by * c.dy), yz[i] = -by * c.dz, zz[i] = -(c.a + bz * c.dz);
     degenerate |= c.isDegenerate;
   }
   return degenerate != 0;

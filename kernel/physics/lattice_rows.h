@@ -42,13 +42,10 @@ void subtractRows(std::size_t count, ConstRow<double> a, ConstRow<double> b, Row
 /// A spring shorter than this part of its rest length has no direction of its own in single precision.
 inline constexpr float kDegenerateSingle = 1e-5f;
 
-/// Second derivative of a row's springs: a I + b d d^T with d = far - near, a = k (1 - l0 / l), not below 0 if projected, and
-/// b = (k - a) / l^2. A degenerate spring gets a = b = 0. Single precision: it only steers a solver.
-struct RowCurvature {
-  float *a, *b;
-};
-/// Returns whether there is a degenerate spring.
-bool springCurvatures(const RowSprings<float>& springs, bool projected, RowCurvature curvature);
+/// Second derivative of a row's springs: H = a I + b d d^T with d = far - near, a = k (1 - l0 / l), not below 0 if projected, and
+/// b = (k - a) / l^2. Written is -H, which joins the ends, as xx xy xz yy yz zz. A degenerate spring gets 0; returns whether there is
+/// one. Single precision: it only steers a solver.
+bool springBlocks(const RowSprings<float>& springs, bool projected, float* const blocks[6]);
 /// pull = H (vFar - vNear), and `product` of the near ends is less by it. A degenerate spring gives none; returns whether there is one.
 bool curvatureProducts(const RowSprings<float>& springs, bool projected, ConstRow<float> vNear, ConstRow<float> vFar, Row<float> product,
                        Row<float> pull);

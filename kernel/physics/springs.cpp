@@ -108,9 +108,10 @@ class SpringTerm final : public Term {
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
     std::vector<double> energies(pieces()), largest(pieces());
     forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
+      double energy = 0, greatest = 0;
+      Batch batch;
       for (std::size_t first = begin; first < end; first += Batch::kSize) {
         const std::size_t count = std::min(Batch::kSize, end - first);
-        Batch batch;
         for (std::size_t i = 0; i < count; ++i) {
           const KeptSpring& s = springs_[first + i];
           batch.set(i, positions[s.b] - positions[s.a], s.stiffnessNPerMm, s.restLength);
@@ -120,12 +121,14 @@ class SpringTerm final : public Term {
           const KeptSpring& s = springs_[first + i];
           const bool isDegenerate = !(batch.length[i] > kDegenerate * s.restLength && batch.length[i] > 0);
           const Vec3 force = isDegenerate ? Vec3(restDirections_[first + i]) * batch.tension[i] : Vec3{batch.x[i], batch.y[i], batch.z[i]};
-          energies[piece] += batch.energy[i];
-          largest[piece] = std::max(largest[piece], std::abs(batch.tension[i]));
+          energy += batch.energy[i];
+          greatest = std::max(greatest, std::abs(batch.tension[i]));
           gradient.add(s.a, -force);
           if (first + i >= held_) gradient.add(s.b, force);
         }
       }
+      energies[piece] = energy;
+      largest[piece] = greatest;
     });
     double total = 0;
     for (std::size_t piece = 0; piece < pieces(); ++piece) {

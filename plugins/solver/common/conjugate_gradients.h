@@ -4,7 +4,6 @@
 #include "plugins/solver/common/node_algebra.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pectora {
 
@@ -22,15 +21,12 @@ class ConjugateGradients {
   void solve(std::size_t free, const NodeVectors& gradient, double forcing, Multiply&& multiply, Metric&& metric, Poll&& poll);
 
   const Vectors& solution() const { return solution_; }
-  /// What one iteration left of the residual's norm, in the mean of the last call.
-  double contraction() const { return contraction_; }
   /// Products with H so far.
   int products() const { return products_; }
 
  private:
   Vectors solution_, r_, z_, p_, hp_;
   int products_ = 0;
-  double contraction_ = 1;
 };
 
 template <class Vectors>
@@ -43,8 +39,6 @@ void ConjugateGradients<Vectors>::solve(std::size_t free, const NodeVectors& gra
   metric(r_, z_);
   scaleAndAdd(z_, 0, p_, free);
   double rz = dot(r_, z_, free);
-  const double first = rz;
-  contraction_ = 1;
   const double target = forcing * forcing * rz;
   const int most = int(std::min<std::size_t>(3 * free + 10, 2000));
   for (int n = 0; n < most && rz > target; ++n) {
@@ -64,7 +58,6 @@ void ConjugateGradients<Vectors>::solve(std::size_t free, const NodeVectors& gra
     const double next = dot(r_, z_, free);
     scaleAndAdd(z_, next / rz, p_, free);
     rz = next;
-    contraction_ = std::pow(rz / first, 0.5 / (n + 1));
   }
 }
 

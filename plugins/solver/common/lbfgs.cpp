@@ -8,8 +8,8 @@ namespace pectora {
 
 namespace {
 
-// How much shorter steps are believed to become.
-constexpr double kLeastShrink = 0.5, kMostShrink = 0.95;
+// What is left of the way is the inverse Hessian times the gradient. The metric may make it too short by this factor.
+constexpr double kMetricsError = 4;
 
 void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
   for (auto [v, w] : {std::pair{&from.x, &to.x}, {&from.y, &to.y}, {&from.z, &to.z}})
@@ -82,8 +82,6 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
   if (metric_->refresh(x)) pairs_.clear(), scale_ = 1;
   copy(e.gradient, q_, free);
   metric_->apply(q_, metricGradient_);
-  const double expected = std::clamp(limits.contraction, kLeastShrink, kMostShrink);
-  double before = 0, shrinkBefore = expected;   // the longest way of a node in the last step, and how that shrank
   for (int n = 0; n < limits.iterations; ++n) {
     watch.iteration(e);
     if (e.isWithin(limits.tolerance)) return Outcome::converged;
@@ -97,14 +95,8 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
       begin(e.gradient, free);
       continue;
     }
-    const double way = step * longest(direction_, free), shrink = before > 0 ? std::clamp(way / before, kLeastShrink, kMostShrink) : expected;
     remember(step, trial.evaluation.gradient, e.gradient, free);   // the search left the old place in the trial's room
-    // Steps that shrink by r leave r / (1 - r) of the last one to go; of the last two ratios the worse one counts.
-    const double worse = std::max(shrink, shrinkBefore);
-    if (getenv("DBG")) fprintf(stderr, "  step %g way %g residual %g -> %g rel %g\n", step, way, trial.evaluation.residual.force, e.residual.force, e.relativeResidual());
-    if (way * worse / (1 - worse) <= limits.accuracy) return Outcome::converged;
-    shrinkBefore = shrink;
-    before = way;
+    if (kMetricsError * scale_ * longest(metricGradient_, free) <= limits.accuracy) return Outcome::converged;
   }
   watch.iteration(e);
   return e.isWithin(limits.tolerance) ? Outcome::converged : Outcome::stalled;

@@ -60,8 +60,6 @@ void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVecto
   for (std::size_t i = objective.system().freeNodes; i < x.size(); ++i) moved.set(i, next[i] - x[i]);
   hessian_->multiply(moved, force);
   solve(objective, force, forcing, poll);
-  contraction_ = usesMetric(objective) ? single_.contraction() : double_.contraction();
-  if (getenv("DBG")) fprintf(stderr, "predict products %d contr %g way %g\n", products(), contraction_, longest(single_.solution(), objective.system().freeNodes));
   axpy(1, direction_, next, objective.system().freeNodes);
 }
 

@@ -23,8 +23,6 @@ class Newton final : public Minimiser {
   /// Moves the free nodes of `next` as the linear answer to its driven nodes, which have moved since the rest state `x`:
   /// dx = -H_ff^-1 H_fd dx_d, with the projected Hessian and until the error is about `forcing` of it.
   void predict(const Objective& objective, const NodeVectors& x, NodeVectors& next, double forcing, const std::function<void()>& poll);
-  /// What one iteration of the conjugate gradients left of the residual, in the mean of the last prediction.
-  double contraction() const { return contraction_; }
   /// Products of the Hessian with a vector so far.
   int products() const { return double_.products() + single_.products(); }
 
@@ -39,7 +37,6 @@ class Newton final : public Minimiser {
   ConjugateGradients<NodeVectors> double_;
   ConjugateGradients<SingleVectors> single_;
   NodeVectors direction_;
-  double contraction_ = 0.95;
 };
 
 }  // namespace pectora

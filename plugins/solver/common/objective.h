@@ -65,7 +65,6 @@ class Minimiser {
     double tolerance = 1e-4;
     int iterations = 100;
     double accuracy = 0;   ///< mm; if above 0, being about so near the minimum will do as well
-    double contraction = 0.95;   ///< what one iteration is expected to leave of the distance
   };
   /// `x` is where to begin and becomes the end, which is always finite and no higher than the beginning; `e` is the
   /// objective there. `iterations` is raised.

@@ -122,7 +122,7 @@ class QuasiStatic final : public Session {
       host.progress(progress(now.relativeResidual(), tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
     };
-    Minimiser::Limits limits{tolerance, iterations, acceleration_.accuracy, predictor_ ? predictor_->contraction() : Minimiser::Limits().contraction};
+    Minimiser::Limits limits{tolerance, iterations, acceleration_.accuracy};
     const int first = solution.iterations;
     const Outcome outcome = minimiser_->minimise(objective, x, end, limits, solution.iterations, watch);
     const int left = iterations - (solution.iterations - first);

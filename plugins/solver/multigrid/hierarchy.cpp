@@ -1,5 +1,7 @@
 #include "plugins/solver/multigrid/hierarchy.h"
 
+#include "plugins/solver/multigrid/coarsening.h"
+
 #include "kernel/physics/workers.h"
 
 #include <Eigen/Cholesky>
@@ -10,131 +12,12 @@
 namespace pectora {
 namespace {
 
-// Below this many rows and columns a grid is solved directly.
-constexpr int kCoarsest = 6;
 // The part of the spectrum that smoothing is to damp, and the steps of power iteration that find its upper end.
 constexpr float kLowest = 0.25f;
-constexpr int kPowerSteps = 8;
+constexpr int kPowerSteps = 8, kPowerStepsAgain = 2;
 // The finest levels cost the most and gain the least from seeing each other's work: additive, a cycle needs no product with
 // their matrices, only with their diagonals.
-static const std::size_t kAdditiveLevels = getenv("ADD") ? std::size_t(atoi(getenv("ADD"))) : 2;
-
-int coarser(int count) { return count > kCoarsest ? count / 2 + 1 : count; }
-
-// The coarse points from which a fine one is interpolated.
-struct Parents {
-  std::size_t point[4];
-  double weight[4];
-  int count = 0;
-};
-
-class Interpolation {
- public:
-  Interpolation(GridShape fine, GridShape coarse) : fine_(fine), coarse_(coarse) {}
-
-  Parents parents(std::size_t point) const {
-    const std::size_t layer = std::size_t(fine_.rows) * fine_.columns;
-    const int l = int(point / layer), r = int(point % layer / fine_.columns), c = int(point % fine_.columns);
-    int rows[2], columns[2];
-    const int rowCount = along(r, fine_.rows, coarse_.rows, rows), columnCount = along(c, fine_.columns, coarse_.columns, columns);
-    Parents p;
-    for (int i = 0; i < rowCount; ++i)
-      for (int j = 0; j < columnCount; ++j) {
-        p.point[p.count] = coarse_.number(l, rows[i], columns[j]);
-        p.weight[p.count++] = 1.0 / (rowCount * columnCount);
-      }
-    return p;
-  }
-
-  // coarse = P^T fine.
-  void restrict(const SingleVectors& fine, SingleVectors& coarse) const {
-    parallelFor(std::size_t(coarse_.layers) * coarse_.rows, [&](std::size_t line) {
-      const int l = int(line) / coarse_.rows, r = int(line) % coarse_.rows;
-      for (auto v : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
-        float* out = &(coarse.*v)[coarse_.number(l, r, 0)];
-        std::fill_n(out, coarse_.columns, 0.0f);
-        forEachNear(r, fine_.rows, coarse_.rows, [&](int fineRow, float rowWeight) {
-          const float* in = &(fine.*v)[fine_.number(l, fineRow, 0)];
-          if (coarse_.columns == fine_.columns) {
-            for (int c = 0; c < coarse_.columns; ++c) out[c] += rowWeight * in[c];
-            return;
-          }
-          // Inner columns without a branch, then the edges.
-          const int last = coarse_.columns - 1, inner = (fine_.columns - 2) / 2;
-          for (int c = 1; c <= std::min(inner, last); ++c) out[c] += rowWeight * (0.5f * (in[2 * c - 1] + in[2 * c + 1]) + in[2 * c]);
-          out[0] += rowWeight * (in[0] + 0.5f * in[1]);
-          for (int c = inner + 1; c <= last; ++c) {
-            if (2 * c - 1 < fine_.columns) out[c] += 0.5f * rowWeight * in[2 * c - 1];
-            if (2 * c < fine_.columns) out[c] += rowWeight * in[2 * c];
-          }
-        });
-      }
-    });
-  }
-
-  // fine += P coarse.
-  void prolongate(const SingleVectors& coarse, SingleVectors& fine) const {
-    parallelFor(std::size_t(fine_.layers) * fine_.rows, [&](std::size_t line) {
-      const int l = int(line) / fine_.rows, r = int(line) % fine_.rows;
-      int rows[2];
-      const int rowCount = along(r, fine_.rows, coarse_.rows, rows);
-      for (auto v : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
-        float* out = &(fine.*v)[fine_.number(l, r, 0)];
-        const float* a = &(coarse.*v)[coarse_.number(l, rows[0], 0)];
-        const float* b = &(coarse.*v)[coarse_.number(l, rows[rowCount - 1], 0)];
-        if (coarse_.columns == fine_.columns) {
-          for (int c = 0; c < fine_.columns; ++c) out[c] += 0.5f * (a[c] + b[c]);
-          continue;
-        }
-        for (int c = 0; 2 * c < fine_.columns; ++c) out[2 * c] += 0.5f * (a[c] + b[c]);
-        for (int c = 0; 2 * c + 1 < fine_.columns; ++c) out[2 * c + 1] += 0.25f * (a[c] + a[c + 1] + b[c] + b[c + 1]);
-      }
-    });
-  }
-
- private:
-  static int along(int i, int fine, int coarse, int parents[2]) {
-    if (fine == coarse) return parents[0] = i, 1;
-    parents[0] = i / 2, parents[1] = i / 2 + 1;
-    return i % 2 == 0 ? 1 : 2;
-  }
-  template <class F>
-  static void forEachNear(int i, int fine, int coarse, F&& f) {
-    if (fine == coarse) return f(i, 1.0f);
-    for (int n = std::max(0, 2 * i - 1); n <= std::min(fine - 1, 2 * i + 1); ++n) f(n, n == 2 * i ? 1.0f : 0.5f);
-  }
-
-  GridShape fine_, coarse_;
-};
-
-// The Galerkin sum into a coarse matrix.
-class Collector {
- public:
-  Collector(GridShape fine, GridMatrix& coarse) : interpolation_(fine, coarse.shape()), coarse_(coarse) {}
-  void diagonal(std::size_t point, const Symmetric3& d) {
-    const Parents p = interpolation_.parents(point);
-    const Matrix3 block{{{d.xx, d.xy, d.xz}, {d.xy, d.yy, d.yz}, {d.xz, d.yz, d.zz}}};
-    for (int i = 0; i < p.count; ++i) {
-      coarse_.addDiagonal(p.point[i], d, p.weight[i] * p.weight[i]);
-      for (int j = 0; j < i; ++j) coarse_.addCoupling(p.point[i], p.point[j], block, p.weight[i] * p.weight[j]);
-    }
-  }
-  void coupling(std::size_t a, std::size_t b, const Matrix3& block) {
-    const Parents p = interpolation_.parents(a), q = interpolation_.parents(b);
-    const auto& m = block.m;
-    const Symmetric3 both{2 * m[0][0], m[0][1] + m[1][0], m[0][2] + m[2][0], 2 * m[1][1], m[1][2] + m[2][1], 2 * m[2][2]};
-    for (int i = 0; i < p.count; ++i)
-      for (int j = 0; j < q.count; ++j) {
-        const double weight = p.weight[i] * q.weight[j];
-        if (p.point[i] == q.point[j]) coarse_.addDiagonal(p.point[i], both, weight);
-        else coarse_.addCoupling(p.point[i], q.point[j], block, weight);
-      }
-  }
-
- private:
-  Interpolation interpolation_;
-  GridMatrix& coarse_;
-};
+constexpr std::size_t kAdditiveLevels = 2;
 
 // y = a x + b y, over fixed pieces.
 void combine(float a, const SingleVectors& x, float b, SingleVectors& y) {
@@ -155,12 +38,20 @@ double largest(const SingleVectors& v) {
   return found;
 }
 
+// Numbers between -1 and 1, always the same.
+void setRandom(SingleVectors& v) {
+  unsigned random = 1;
+  const auto next = [&] { return float(int((random = random * 1664525u + 1013904223u) >> 8)) / float(1 << 23) - 1; };
+  for (std::size_t i = 0; i < v.size(); ++i) v.x[i] = next(), v.y[i] = next(), v.z[i] = next();
+}
+
 }  // namespace
 
 struct Hierarchy::Level {
-  explicit Level(GridShape shape) : matrix(shape), x(0), b(0), residual(shape.points()), step(shape.points()) {}
+  explicit Level(GridShape shape) : matrix(shape), x(0), b(0), residual(shape.points()), step(shape.points()), roughest(shape.points()) {}
   GridMatrix matrix;
   SingleVectors x, b, residual, step;   // x and b of coarse grids only
+  SingleVectors roughest;             // where D^-1 A acts most strongly
   float highest = 2;                  // of the spectrum of D^-1 A
 };
 
@@ -169,15 +60,13 @@ struct Hierarchy::Coarsest {
   explicit Coarsest(const GridMatrix& matrix) {
     const Eigen::Index n = 3 * Eigen::Index(matrix.shape().points());
     Eigen::MatrixXd full = Eigen::MatrixXd::Zero(n, n);
-    matrix.forEach(
-        [&](std::size_t p, const Symmetric3& d) {
-          full.block<3, 3>(3 * Eigen::Index(p), 3 * Eigen::Index(p)) << d.xx, d.xy, d.xz, d.xy, d.yy, d.yz, d.xz, d.yz, d.zz;
-        },
-        [&](std::size_t a, std::size_t b, const Matrix3& block) {
-          const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> m(&block.m[0][0]);
-          full.block<3, 3>(3 * Eigen::Index(a), 3 * Eigen::Index(b)) = m;
-          full.block<3, 3>(3 * Eigen::Index(b), 3 * Eigen::Index(a)) = m.transpose();
-        });
+    const GridShape shape = matrix.shape();
+    matrix.forEachRun([&](GridPoint a, GridPoint b, std::size_t count, const float* const entries[9]) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Index p = 3 * Eigen::Index(shape.number(a.layer, a.row, a.column) + i), q = 3 * Eigen::Index(shape.number(b.layer, b.row, b.column) + i);
+        for (int e = 0; e < 9; ++e) full(p + e / 3, q + e % 3) = full(q + e % 3, p + e / 3) = double(entries[e][i]);
+      }
+    });
     // Coarse points beyond the fine grid's edge may hold nothing, and rounding must not make it indefinite.
     full.diagonal().array() += 1e-6 * full.diagonal().maxCoeff();
     inverse = full.llt().solve(Eigen::MatrixXd::Identity(n, n)).cast<float>();
@@ -189,54 +78,53 @@ Hierarchy::Hierarchy(GridShape fine) : fine_(fine) {}
 Hierarchy::~Hierarchy() = default;
 
 void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& multiply) {
+  std::vector<std::unique_ptr<Level>> before = std::move(levels_);
   levels_.clear();
   levels_.push_back(std::make_unique<Level>(fine_));
-  // The diagonal of the fine grid.
-  std::vector<Symmetric3> diagonal(nodes);
-  hessian.addDiagonal(diagonal);
-  for (std::size_t i = 0; i < fine_.points(); ++i) levels_[0]->matrix.addDiagonal(i, diagonal[i], 1);
-  levels_[0]->matrix.finish();
+  // Of the fine grid the diagonal alone.
+  {
+    std::vector<Symmetric3> diagonal(nodes);
+    hessian.addDiagonal(diagonal);
+    levels_[0]->matrix.addDiagonal(diagonal);
+    levels_[0]->matrix.finish();
+  }
 
   // Coarser and coarser.
-  for (GridShape shape = fine_; coarser(shape.rows) < shape.rows || coarser(shape.columns) < shape.columns;) {
-    const GridShape next{shape.layers, coarser(shape.rows), coarser(shape.columns)};
-    auto level = std::make_unique<Level>(next);
-    level->x = level->b = SingleVectors(next.points());
+  for (GridShape shape = fine_; coarser(shape).points() < shape.points(); shape = coarser(shape)) {
+    auto level = std::make_unique<Level>(coarser(shape));
+    level->x = level->b = SingleVectors(level->matrix.shape().points());
     Collector collector(shape, level->matrix);
-    const auto addDiagonal = [&](std::size_t p, const Symmetric3& d) { collector.diagonal(p, d); };
-    const auto addCoupling = [&](std::size_t a, std::size_t b, const Matrix3& m) {
-      if (a < shape.points() && b < shape.points()) collector.coupling(a, b, m);
-    };
-    if (levels_.size() == 1) {
-      for (std::size_t i = 0; i < fine_.points(); ++i) addDiagonal(i, diagonal[i]);
-      hessian.forEachCoupling(addCoupling);
-    } else {
-      levels_.back()->matrix.forEach(addDiagonal, addCoupling);
-    }
+    collector.add(levels_.back()->matrix);
+    if (levels_.size() == 1)
+      hessian.forEachCouplingRun(
+          [&](std::size_t p, std::size_t q, std::size_t count, const float* const entries[9]) {
+            if (p < fine_.points() && q < fine_.points()) collector.run(p, q, count, entries);
+          },
+          [&](std::size_t p, std::size_t q, const Matrix3& block) { collector.coupling(p, q, block); });
     level->matrix.finish();
     levels_.push_back(std::move(level));
-    shape = next;
   }
   coarsest_ = std::make_unique<Coarsest>(levels_.back()->matrix);
 
-  // The upper ends of the spectra, by power iteration from a start that is rough everywhere.
-  for (auto& level : levels_) {
-    SingleVectors& v = level->residual;
-    unsigned random = 1;
-    const auto next = [&] { return float(int((random = random * 1664525u + 1013904223u) >> 8)) / float(1 << 23) - 1; };
-    for (std::size_t i = 0; i < v.size(); ++i) v.x[i] = next(), v.y[i] = next(), v.z[i] = next();
+  // The upper ends of the spectra, by power iteration: from a start that is rough everywhere, or from where the last one ended.
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    Level& level = *levels_[i];
+    SingleVectors &v = level.roughest, product(level.residual);
+    if (before.empty()) setRandom(v);
+    else v = std::move(before[i]->roughest);
     double factor = 2;
-    for (int n = 0; n < kPowerSteps; ++n) {
-      const double before = largest(v);
-      SingleVectors product(v.size());
-      if (level == levels_.front()) multiply(v, product);
-      else level->matrix.multiply(v, product);
-      level->matrix.multiplyInverseDiagonal(product, v);
-      factor = largest(v) / before;
+    for (int n = before.empty() ? 0 : kPowerSteps - kPowerStepsAgain; n < kPowerSteps; ++n) {
+      const double size = largest(v);
+      if (i == 0) multiply(v, product);
+      else level.matrix.multiply(v, product);
+      level.matrix.multiplyInverseDiagonal(product, v);
+      factor = largest(v) / size;
       if (!(factor > 0 && std::isfinite(factor))) break;
-      combine(0, v, float(1 / (factor * before)), v);
+      combine(0, v, float(1 / (factor * size)), v);
     }
-    level->highest = 1.1f * float(std::isfinite(factor) ? factor : 2);
+    if (!std::isfinite(factor)) setRandom(v);
+    level.highest = 1.1f * float(std::isfinite(factor) ? factor : 2);
+    if (i < kAdditiveLevels) level.matrix.keepDiagonal();
   }
 }
 
@@ -263,10 +151,9 @@ void Hierarchy::cycle(std::size_t index, const SingleVectors& b, SingleVectors& 
     combine(1, b, -1, level.residual);
   }
   Level& coarse = *levels_[index + 1];
-  const Interpolation interpolation(level.matrix.shape(), coarse.matrix.shape());
-  interpolation.restrict(isAdditive ? b : level.residual, coarse.b);
+  restrict(level.matrix.shape(), isAdditive ? b : level.residual, coarse.matrix.shape(), coarse.b);
   cycle(index + 1, coarse.b, coarse.x);
-  interpolation.prolongate(coarse.x, x);
+  prolongate(coarse.matrix.shape(), coarse.x, level.matrix.shape(), x);
   if (isAdditive) return;
   // And once more, so that the cycle is symmetric.
   level.matrix.multiply(x, level.residual);

@@ -7,7 +7,7 @@ using namespace pectora;
 
 constexpr int kStepIterations = 200;
 // The linear answer need not be better than the bar's movement is linear.
-static const double kForcing = getenv("FORC") ? atof(getenv("FORC")) : 0.1;
+constexpr double kForcing = 0.1;
 
 class MultigridSolver final : public Solver {
  public:

@@ -60,7 +60,7 @@ class Patient {
 void phantomTick(benchmark::State& state) {
   Patient& patient = Patient::one();
   QuietHost host;
-  const auto warm = patient.solve(patient.scene(double(state.range(0)) / 100, state.range(1)), getenv("SOLVER") ? getenv("SOLVER") : "solver.multigrid", getenv("SOLVER") ? Settings{{"tolerance", atof(getenv("TOL"))}} : Settings{{"accuracy", 0.1}}, host);
+  const auto warm = patient.solve(patient.scene(double(state.range(0)) / 100, state.range(1)), "solver.multigrid", {{"accuracy", 0.1}}, host);
   warm->solve(*patient.plan(20), host);
   double lift = 20, forces = 0, iterations = 0;
   for (auto _ : state) {

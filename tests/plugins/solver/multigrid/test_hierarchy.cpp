@@ -69,15 +69,12 @@ TEST(GridMatrix, MultipliesAsTheFullMatrixDoes) {
     const Matrix3 block = randomBlock(random);
     const Eigen::Matrix3d m = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&block.m[0][0]);
     const auto at = [&](std::size_t i, std::size_t j) { return full.block<3, 3>(3 * Eigen::Index(i), 3 * Eigen::Index(j)); };
-    if (a == b) {
-      const Eigen::Matrix3d both = m + m.transpose();
-      matrix.addDiagonal(a, {both(0, 0), both(0, 1), both(0, 2), both(1, 1), both(1, 2), both(2, 2)}, 0.5);
-      at(a, a) += 0.5 * both;
-    } else {
-      matrix.addCoupling(a, b, block, 0.5);
-      at(a, b) += 0.5 * m;
-      at(b, a) += 0.5 * m.transpose();
-    }
+    float numbers[9];
+    const float* entries[9];
+    for (int e = 0; e < 9; ++e) numbers[e] = float(block.m[e / 3][e % 3]), entries[e] = &numbers[e];
+    matrix.add(shape.point(a), shape.point(b), 1, entries, 0.5);
+    at(a, b) += 0.5 * m;
+    at(b, a) += 0.5 * m.transpose();
   }
   const SingleVectors x = noise(shape.points(), 1);
   SingleVectors y(shape.points());
