@@ -20,11 +20,12 @@ void checkNeeds(const std::string& solver, const Needs& needs, const std::vector
 }  // namespace
 
 WarmSolve::WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::unique_ptr<Solver> solver, Registry& registry, Host& host)
-    : scene_(std::move(scene)), rest_(scene_), solver_(std::move(solver)), compiled_(compile(*scene_, registry)) {
+    : scene_(std::move(scene)), rest_(scene_), solver_(std::move(solver)), registry_(registry), compiled_(compile(*scene_, registry)) {
   for (const EffectUse& use : compiled_.effects)
     if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
   checkNeeds(id, solver_->needs(), compiled_.effects);
   if (!compiled_.isLoadedInCt) return;
+  if (scene_->still > 0) host.info("all points are computed, as the weight moves them all");
   if (const auto found = findRestShape(*scene_, *solver_, registry, host)) {
     rest_ = found;
     compiled_ = compile(*rest_, registry);
@@ -53,13 +54,16 @@ void WarmSolve::startFrom(const Motion& motion) {
 void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
 
 void WarmSolve::prepare(Host& host) {
-  if (!session_) session_ = solver_->prepare(*compiled_.system, host);
+  if (session_ || region_) return;
+  if (scene_->still > 0 && !compiled_.isLoadedInCt) region_ = std::make_unique<RegionSolve>(*rest_, *compiled_.system, scene_->still, *solver_, registry_);
+  else session_ = solver_->prepare(*compiled_.system, host);
 }
 
 std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   prepare(host);
   const Drive drive = makeDrive(*rest_, compiled_, plan);
-  Solution solution = session_->solve(drive, start_.size() ? &start_ : nullptr, host);
+  const NodeVectors* start = start_.size() ? &start_ : nullptr;
+  Solution solution = region_ ? region_->solve(plan, drive, start, host) : session_->solve(drive, start, host);
 
   auto motion = std::make_shared<Motion>();
   const System& system = *compiled_.system;

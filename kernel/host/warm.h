@@ -1,7 +1,7 @@
 // A scene made ready for a solver once, and solved for one plan after another.
 #pragma once
 
-#include "kernel/host/compile.h"
+#include "kernel/host/region.h"
 #include "kernel/stage/solver.h"
 #include "kernel/value/motion.h"
 
@@ -31,8 +31,10 @@ class WarmSolve {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const Scene> rest_;   // without the loads that the CT shows it under; the scene itself if there are none
   std::unique_ptr<Solver> solver_;
+  Registry& registry_;
   Compiled compiled_;
   std::unique_ptr<Session> session_;   // null until it is made ready
+  std::unique_ptr<RegionSolve> region_;   // in its place where points that stand still are left out
   NodeVectors start_;                  // empty: at rest
 };
 

@@ -60,6 +60,7 @@ struct Scene : Value {
   double thickness = 0;                      ///< mean distance from skin to pleura over the middle third of the columns, mm
   std::vector<Anchor> anchors;
   std::vector<std::shared_ptr<const EffectCall>> effects;
+  double still = 0;                          ///< mm; above 0, points that the operation moves by less need not be computed
   double effectAccuracy = 0;                 ///< mm; above 0, only those of `effects` run that change the skin by about as much
 
   const char* kind() const override { return kName; }

@@ -60,11 +60,13 @@ std::vector<Vec3> levelAt(const std::vector<LayerSlice>& layer, double z, int co
 void LayerSettings::describe(Visitor& v) {
   v.real("spacing", spacing, "mm", {1, 50}, {4, 12}, "Distance between neighbouring skin points");
   v.real("margin", margin, "mm", {0, 200}, {0, 60}, "How far the model reaches above the sternum and below the ribs");
+  v.real("still", still, "mm", {0, 10}, {0, 1}, "Leave out of the computation what the operation moves by less than this; 0: compute all");
   v.real("accuracy", accuracy, "mm", {0, 100}, {0, 2}, "Run only those of the effects that change the skin by about as much, which rough solves tell before the solver's own; 0: all of them");
 }
 
 void buildLayers(const LayerSettings& settings, Scene& scene) {
   const Anatomy& anatomy = *scene.cage->anatomy;
+  scene.still = settings.still;
   scene.effectAccuracy = settings.accuracy;
   const auto [low, high] = cageExtent(*scene.cage, settings.margin);
 

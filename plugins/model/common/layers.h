@@ -9,7 +9,7 @@ namespace pectora {
 struct LayerSettings {
   double spacing = 10;       ///< wanted distance between neighbours on the skin, mm, along rows and columns
   double margin = 20;        ///< how far the model reaches above and below the ribs and sternum, mm
-
+  double still = 0;          ///< Scene::still
   double accuracy = 0;       ///< Scene::effectAccuracy
 
   void describe(Visitor& v);

@@ -11,29 +11,29 @@
 
 namespace pectora {
 
-// A wall of 17 x 17 points on a "sternum" that moves as a whole.
+// A wall of points x points on a "sternum" that moves as a whole.
 struct Wall {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>();
   std::shared_ptr<Plan> plan = std::make_shared<Plan>();
 
-  explicit Wall(double lift, double stiffnessScale = 1) {
+  explicit Wall(double lift, double stiffnessScale = 1, int points = 17) {
     auto cage = std::make_shared<RibCage>();
     cage->anatomy = std::make_shared<Anatomy>();
     scene->cage = cage;
     plan->cage = cage;
-    scene->rows = scene->columns = 17;
+    scene->rows = scene->columns = points;
     scene->rowSpacing = scene->columnSpacing = 8;
     scene->thickness = 20;
-    for (int r = 0; r < 17; ++r)
-      for (int c = 0; c < 17; ++c) {
+    for (int r = 0; r < points; ++r)
+      for (int c = 0; c < points; ++c) {
         scene->outer.push_back({8.0 * c, -20, 8.0 * r});
         scene->inner.push_back({8.0 * c, 0, 8.0 * r});
         // The middle hangs on what moves, the rim on what does not.
-        const bool moves = std::hypot(r - 8, c - 8) < 3.5;
+        const bool moves = std::hypot(r - points / 2, c - points / 2) < 3.5;
         for (const Vec3 offset : {Vec3{0, 6, 0}, Vec3{7, 3, 0}, Vec3{0, 3, 7}})
           scene->anchors.push_back({scene->index(r, c), moves ? BodyKind::sternum : BodyKind::rib, 0, 0, scene->inner.back() + offset});
       }
-    scene->outerMass.assign(17 * 17, 1e-3);
+    scene->outerMass.assign(std::size_t(points) * points, 1e-3);
     scene->innerMass = scene->outerMass;
     scene->effects = {call("effect.stretch", {{"youngs_modulus", 200 * stiffnessScale}}), call("effect.shear", {{"youngs_modulus", 200 * stiffnessScale}}),
                       call("effect.bend", {{"youngs_modulus", 200 * stiffnessScale}}), call("effect.direct", {{"youngs_modulus", 10 * stiffnessScale}}),
