@@ -14,7 +14,6 @@ namespace {
 // Between load steps it is enough to be near.
 constexpr double kLooseTolerance = 1e-2;
 constexpr double kLeastPartOfStep = 1.0 / 4;
-constexpr double kLooseForcing = 0.5;
 // Single precision errs by less than a thousandth of this, mm, so that it is enough where such an accuracy is asked for.
 constexpr double kRoughAccuracy = 0.01;
 // A step may end this far from its prediction, as a part of the bar's movement.
@@ -72,8 +71,7 @@ class QuasiStatic final : public Session {
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
       NodeVectors trial = x;
       movement.apply(next, trial);
-      // A prediction that nothing is judged by may be rougher.
-      const double forcing = movement.isFromStart() ? std::max(kLooseForcing, acceleration_.forcing) : acceleration_.forcing;
+      const double forcing = movement.isFromStart() ? acceleration_.warmForcing : acceleration_.forcing;
       if (predictor_) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
       const NodeVectors predicted = trial;
       const int left = most - solution.iterations;

@@ -157,6 +157,35 @@ TEST(LatticeTerm, GivesTheSameBitsForAnyNumberOfThreads) {
   setThreads(before);
 }
 
+TEST(LatticeTerm, RoughForcesAreThoseOfSinglePrecisionEvenFarFromTheOrigin) {
+  System system = crookedGrid(20, 23, 0);
+  for (std::size_t i = 0; i < system.rest.size(); ++i) system.rest.add(i, {-300, 200, -1200});
+  const auto term = makeLatticeTerm("lattice", system, someStencil());
+  for (const double amplitude : {3.0, 1e-3}) {
+    const NodeVectors x = perturbed(system, amplitude, 5);
+    NodeVectors exact(x.size()), rough(x.size());
+    double largest = 0, largestRough = 0;
+    const double energy = term->evaluate(x, exact, largest), energyRough = term->evaluateRoughly(x, rough, largestRough);
+    // Some ten roundings of 6e-8 a spring; a dozen springs a point.
+    EXPECT_NEAR(energyRough, energy, 1e-5 * energy);
+    EXPECT_NEAR(largestRough, largest, 1e-5 * largest);
+    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT(distance(rough[i], exact[i]), 1e-5 * largest) << amplitude;
+  }
+}
+
+TEST(LatticeTerm, RoughForcesAreTheExactOnesWhereASpringHasNoLength) {
+  const System system = crookedGrid(5, 6, 0);
+  const auto term = makeLatticeTerm("lattice", system, someStencil());
+  NodeVectors x = perturbed(system, 1, 3), exact(x.size()), rough(x.size());
+  x.set(7, x[8]);
+  double largest = 0;
+  const double energy = term->evaluate(x, exact, largest);
+  EXPECT_EQ(term->evaluateRoughly(x, rough, largest), energy);
+  EXPECT_EQ(rough.x, exact.x);
+  EXPECT_EQ(rough.y, exact.y);
+  EXPECT_EQ(rough.z, exact.z);
+}
+
 TEST(LatticeTerm, StaysFiniteWhenPointsCoincide) {
   const System system = crookedGrid(4, 4, 0);
   const auto term = makeLatticeTerm("all", system, someStencil());

@@ -1,4 +1,5 @@
 // The coarse grids and the cycle.
+#include "plugins/solver/multigrid/coarsening.h"
 #include "plugins/solver/multigrid/hierarchy.h"
 
 #include "tests/plugins/solver/multigrid/walls.h"
@@ -85,6 +86,55 @@ TEST(GridMatrix, MultipliesAsTheFullMatrixDoes) {
   // Some 100 products of single precision a row.
   for (std::size_t i = 0; i < shape.points(); ++i)
     EXPECT_LT((expected.segment<3>(3 * Eigen::Index(i)) - Eigen::Vector3d(y[i].x, y[i].y, y[i].z)).norm(), 100 * 20 * kSingle);
+}
+
+// Grids of odd and even counts, and one that is made coarser along one direction only.
+TEST(Coarsening, GivesTheMatrixOfTheInterpolatedMovement) {
+  for (const auto& [rows, columns] : {std::pair{17, 17}, {16, 21}, {5, 24}}) {
+    System system = fineWall(std::max(rows, columns));
+    system.rows = rows, system.columns = columns;
+    system.freeNodes = 2 * std::size_t(rows) * columns;
+    NodeVectors rest(system.freeNodes);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const std::size_t point = i % system.points();
+      rest.set(i, {2.0 * double(point % columns), i < system.points() ? -20.0 : 0.0, 2.0 * double(point / columns)});
+    }
+    system.rest = rest;
+    std::vector<StencilSpring> stencil;
+    for (int r = -2; r <= 2; ++r)
+      for (int c = -2; c <= 2; ++c) stencil.push_back({Layer::outer, Layer::inner, r, c, 1 + 0.1 * r + 0.03 * c});
+    stencil.push_back({Layer::outer, Layer::outer, 0, 1, 0.7});
+    stencil.push_back({Layer::outer, Layer::outer, 2, -1, 0.4});
+    system.terms.clear();
+    system.terms.push_back(makeLatticeTerm("lattice", system, stencil));
+    const auto hessian = makeHessian(system);
+    NodeVectors moved = rest;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved.y[i] -= 3 * std::sin(0.2 * moved.x[i]) * std::cos(0.1 * moved.z[i]);
+    hessian->linearise(moved, true);
+
+    const GridShape fine{2, rows, columns}, coarse = coarser(fine);
+    GridMatrix matrix(coarse), diagonalOnly(fine);
+    Collector collector(fine, matrix);
+    std::vector<Symmetric3> diagonal(system.rest.size());
+    hessian->addDiagonal(diagonal);
+    diagonalOnly.addDiagonal(diagonal);
+    collector.add(diagonalOnly);
+    hessian->forEachCouplingRun([&](std::size_t a, std::size_t b, std::size_t n, const float* const e[9]) { collector.run(a, b, n, e); },
+                                [&](std::size_t a, std::size_t b, const Matrix3& m) { collector.coupling(a, b, m); });
+    matrix.finish();
+
+    // (P x) . A (P y) = x . (P^T A P) y, for some x and y.
+    for (unsigned seed : {1u, 2u, 3u}) {
+      const SingleVectors x = noise(coarse.points(), seed), y = noise(coarse.points(), seed + 10);
+      SingleVectors px(fine.points()), py(fine.points()), apy(fine.points()), cy(coarse.points());
+      prolongate(coarse, x, fine, px);
+      prolongate(coarse, y, fine, py);
+      hessian->multiplySingle(py, apy);
+      matrix.multiply(y, cy);
+      const double scale = std::sqrt(inner(px, px) * inner(apy, apy));
+      EXPECT_NEAR(inner(px, apy), inner(x, cy), 100 * kSingle * scale) << rows << " x " << columns;
+    }
+  }
 }
 
 TEST(Hierarchy, CycleIsSymmetricAndPositive) {
