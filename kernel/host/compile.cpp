@@ -148,13 +148,16 @@ Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
 BarLoad shareLift(const Compiled& compiled, const Plan& plan) {
   double chest = 0, bar = INFINITY;
   for (const auto& [steering, guides] : compiled.steering) {
-    if (steering.chestStiffness) chest += steering.chestStiffness(plan);
-    if (steering.barStiffness) bar = 1 / (1 / bar + 1 / steering.barStiffness(plan));
+    if (steering.chestResistance) chest += steering.chestResistance(plan);
+    if (steering.barResistance) bar = 1 / (1 / bar + 1 / steering.barResistance(plan));
   }
   BarLoad load;
   if (!(chest > 0)) return load;
   load.part = 1 / (1 + chest / bar);
-  load.force = chest * load.part * plan.lift;
+  // The bars' forces F_j = f L_j do the work that the chest takes up: the sum of F_j L_j is that of the chest.
+  double lifts = 0, squares = 0;
+  for (const Bar& lifted : plan.bars) lifts += lifted.lift, squares += lifted.lift * lifted.lift;
+  load.force = squares > 0 ? chest * load.part * lifts / squares : 0;
   return load;
 }
 

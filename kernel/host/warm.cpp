@@ -75,7 +75,7 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   motion->inner = layerOf(system.layers - 1);
   motion->anchors = drive.frames.back();
   const BarLoad load = shareLift(compiled_, plan);
-  motion->lift = load.part * plan.lift;
+  motion->lift = load.part * plan.lift();
   motion->barForce = load.force;
   motion->status = solution.status;
   motion->message = std::move(solution.message);

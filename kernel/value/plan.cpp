@@ -10,6 +10,8 @@
 namespace pectora {
 namespace {
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+
 // Deflection of a clamped beam whose other end is guided: 0 to 1, flat at both ends.
 double beam(double s) { return s * s * (3 - 2 * s); }
 
@@ -91,6 +93,8 @@ RigidMotion RigidMotion::part(double t) const {
   return scaled;
 }
 
+double Bar::tiltDeg() const { return std::atan2(-up.x, up.z) * kDegrees; }
+
 Vec3 Plan::moved(const Anchor& anchor, double t) const {
   switch (anchor.body) {
     case BodyKind::rib:
@@ -118,20 +122,28 @@ std::vector<Fact> Plan::facts() const {
   std::optional<PlannedIndices> planned;
   if (cage && cage->anatomy && (planned = plannedIndices(*cage->anatomy, motion))) indices = &*planned;
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return {{"lift", lift, "mm"},
-          {"angle", motion.angle * 180 / std::numbers::pi, "deg"},
-          {"pivot_z", motion.pivot.z, "mm"},
-          {"deepest_x", deepest.x, "mm"},
-          {"deepest_y", deepest.y, "mm"},
-          {"deepest_z", deepest.z, "mm"},
-          {"intercostal_space", double(intercostalSpace), ""},
-          {"worst_cartilage_strain", 100 * worst, "%"},
-          {"depression", indices ? indices->after.depression() : none, "mm"},
-          {"haller_index", indices ? indices->after.haller() : none, ""},
-          {"correction_index", indices ? indices->after.correctionIndex() : none, "%"},
-          {"depression_before", indices ? indices->before.depression() : none, "mm"},
-          {"haller_index_before", indices ? indices->before.haller() : none, ""},
-          {"correction_index_before", indices ? indices->before.correctionIndex() : none, "%"}};
+  std::vector<Fact> facts{{"bars", double(bars.size()), ""}};
+  for (const Bar& bar : bars) {
+    const std::string which = &bar == &bars.front() ? "" : "second_";
+    facts.insert(facts.end(), {{which + "lift", bar.lift, "mm"},
+                               {which + "point_x", bar.point.x, "mm"},
+                               {which + "point_y", bar.point.y, "mm"},
+                               {which + "point_z", bar.point.z, "mm"},
+                               {which + "tilt", bar.tiltDeg(), "deg"},
+                               {which + "intercostal_space_right", double(bar.rightSpace), ""},
+                               {which + "intercostal_space_left", double(bar.leftSpace), ""}});
+  }
+  facts.insert(facts.end(), {{"angle", motion.angle * kDegrees, "deg"},
+                             {"shift", -motion.translation.y, "mm"},
+                             {"pivot_z", motion.pivot.z, "mm"},
+                             {"worst_cartilage_strain", 100 * worst, "%"},
+                             {"depression", indices ? indices->after.depression() : none, "mm"},
+                             {"haller_index", indices ? indices->after.haller() : none, ""},
+                             {"correction_index", indices ? indices->after.correctionIndex() : none, "%"},
+                             {"depression_before", indices ? indices->before.depression() : none, "mm"},
+                             {"haller_index_before", indices ? indices->before.haller() : none, ""},
+                             {"correction_index_before", indices ? indices->before.correctionIndex() : none, "%"}});
+  return facts;
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Plan::parts() const { return {{"cage", cage}}; }
