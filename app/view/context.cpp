@@ -101,6 +101,7 @@ void Context::open(const std::string& given) {
   choices.source = isResult ? Source::result : Source::dicom;
   choices.loader = {isResult ? "" : "loader.dicom", {{"path", path}}};
   choices.ctLandmarks = {};
+  choices.corrections.clear();
   picked.reset();
   changed(false);
 }
@@ -110,6 +111,7 @@ void Context::openPhantom() {
   choices.source = Source::phantom;
   choices.scanPath.clear();
   choices.ctLandmarks = choices.scanLandmarks = {};
+  choices.corrections.clear();
   picked.reset();
   changed(false);
 }

@@ -33,7 +33,9 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   picture("patient");
   hand.click("tab.bar");
   hand.frames(3);
+  // Up, and back to the lift that the phantom's scan shows.
   hand.drag("bar.lift", {0.50f, 0.5f}, {0.60f, 0.5f});
+  hand.drag("bar.lift", {0.60f, 0.5f}, {0.50f, 0.5f});
   picture("bar");
   hand.click("tab.tissue");
   hand.click("effect.cross.open");

@@ -76,7 +76,7 @@ void SceneParts::updateBones(const Context& context) {
   movedOf_ = moved, movedPart_ = context.scene.part;
   ++version_;
   Surface cartilages, sternum = sternumAtRest_, bar;
-  barHandle_ = {};
+  barHandles_.clear();
   if (cage) {
     const double t = context.scene.part;
     for (std::size_t i = 0; i < cage->cartilages.size(); ++i) {
@@ -94,8 +94,10 @@ void SceneParts::updateBones(const Context& context) {
     const RigidMotion motion = plan->motion.part(context.scene.part);
     for (Vec3& p : sternum.points) p = motion(p);
     for (Vec3& n : sternum.normals) n = motion.rotate(n);
-    bar = sweptBar(plan->bar.centerline, plan->bar.width, plan->bar.height);
-    barHandle_ = tube(plan->bar.centerline, 0.8 * plan->bar.width, 6);
+    for (const Bar& one : plan->bars) {
+      bar.append(sweptBar(one.centerline, one.up, one.width, one.height));
+      barHandles_.push_back(tube(one.centerline, 0.8 * one.width, 6));
+    }
   }
   if (const Mesh* kept = Results::as<Mesh>(r.barMesh)) {
     bar.points = kept->points, bar.triangles = kept->triangles;

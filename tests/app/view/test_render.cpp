@@ -67,7 +67,7 @@ TEST(Surface, TubesBarsAndBallsAreClosedAndFaceOutwards) {
   EXPECT_NEAR(volumeOf(ball({3, 4, 5}, 10)) / sphere, 0.94, 0.03);   // 10 x 16 facets within the sphere
   // The bar has no ends: four faces of its section's sides.
   double area = 0;
-  const Surface bar = sweptBar(line, 12, 3);
+  const Surface bar = sweptBar(line, {0, 0, 1}, 12, 3);
   for (const auto& t : bar.triangles) area += norm(cross(bar.points[t[1]] - bar.points[t[0]], bar.points[t[2]] - bar.points[t[0]])) / 2;
   EXPECT_NEAR(area, 100 * 2 * (12 + 3), 1e-6);
 }
