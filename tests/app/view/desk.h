@@ -27,6 +27,12 @@ struct Desktop {
 
   Context& context() { return app.context(); }
   const Results& results() { return *app.context().results; }
+  /// What it told, line by line: for messages of tests.
+  std::string told() {
+    std::string text;
+    for (const LogLine& line : context().log) text += line.text + "\n";
+    return text;
+  }
   void rest() { ASSERT_TRUE(hand.rest()) << context().activity.stage << " " << context().activity.what; }
   void click(const std::string& name, float x = 0.5f, float y = 0.5f) {
     hand.click(name, x, y);

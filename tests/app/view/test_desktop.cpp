@@ -39,7 +39,7 @@ TEST(Drop, OpensAFolderOfDicomAScanAScriptAndAResult) {
   std::ofstream(desk.home + "/mine.lua") << scriptOf(wanted);
   drop(desk.home + "/mine.lua");
   ASSERT_TRUE(desk.results().planValue());
-  EXPECT_EQ(desk.results().planValue()->lift(), 17);
+  EXPECT_EQ(desk.results().planValue()->lift(), 17) << desk.told();
 
   // Its results, written and dropped; and what is nothing is told.
   const std::string result = desk.home + "/result";
