@@ -52,5 +52,7 @@ BarLoad shareLift(const Compiled& compiled, const Plan& plan);
 
 /// Where the driven nodes go while the plan is carried out.
 Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan);
+/// The same with nothing but the end of the plan, for a solve that goes straight there from where an earlier one left them.
+Drive makeDriveEnd(const Scene& scene, const Compiled& compiled, const Plan& plan);
 
 }  // namespace pectora

@@ -58,7 +58,7 @@ void WarmSolve::prepare(Host& host) {
 
 std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   prepare(host);
-  const Drive drive = makeDrive(*rest_, compiled_, plan);
+  const Drive drive = start_.size() ? makeDriveEnd(*rest_, compiled_, plan) : makeDrive(*rest_, compiled_, plan);
   Solution solution = session_->solve(drive, start_.size() ? &start_ : nullptr, host);
 
   auto motion = std::make_shared<Motion>();

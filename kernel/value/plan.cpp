@@ -36,14 +36,23 @@ Curve withBow(const Curve& curve, double scale) {
 // The bow that gives the wanted length, or comes as close as flattening it can. It is never raised: a cartilage that is
 // too long now pushes its rib aside rather than arching forwards.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0, high = 1;
-  if (withBow(curve, low).length() >= length) return withBow(curve, low);
-  if (curve.length() <= length) return curve;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (withBow(curve, middle).length() < length ? low : high) = middle;
+  const Curve flat = withBow(curve, 0);
+  double low = 0, high = 1, tooShort = flat.length() - length, tooLong = curve.length() - length;
+  if (tooShort >= 0) return flat;
+  if (tooLong <= 0) return curve;
+  // Between the two by the chord, where one end is kept twice with half its weight (the Illinois rule).
+  Curve bowed = curve;
+  for (int i = 0, last = 0; i < 50; ++i) {
+    const double scale = (low * tooLong - high * tooShort) / (tooLong - tooShort);
+    bowed = withBow(curve, scale);
+    const double off = bowed.length() - length;
+    if (std::abs(off) < 1e-10 * length) break;
+    const int side = off < 0 ? -1 : 1;
+    if (side < 0) low = scale, tooShort = off, tooLong *= last < 0 ? 0.5 : 1;
+    else high = scale, tooLong = off, tooShort *= last > 0 ? 0.5 : 1;
+    last = side;
   }
-  return withBow(curve, 0.5 * (low + high));
+  return bowed;
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ void energyCurve(const Motion& motion, float scale) {
 void figuresPanel(Context& context) {
   const Results& r = *context.results;
   if (r.planValue()) {
-    const std::vector<Fact> facts = r.planValue()->facts();
+    const std::vector<Fact>& facts = context.planFacts;
     heading("Plan");
     change(facts, "Haller index", "haller_index", "", 2);
     change(facts, "Correction index", "correction_index", " %", 1);
@@ -81,7 +81,7 @@ void figuresPanel(Context& context) {
     const bool isGood = motion->status == SolveStatus::converged;
     row("Solver", std::string(statusName(motion->status)), r.isPreview ? &kMuted : isGood ? &kGood : &kBad);
     if (!motion->message.empty()) note(motion->message);
-    if (const double* moved = factOf(motion->facts(), "greatest_skin_displacement")) row("Greatest movement", fmt::format("{:.1f} mm", *moved));
+    if (const double* moved = factOf(context.motionFacts, "greatest_skin_displacement")) row("Greatest movement", fmt::format("{:.1f} mm", *moved));
     if (r.planValue()) {
       const bool isLess = motion->lift < r.planValue()->lift() - 0.05;
       row("Lift reached", isLess ? fmt::format("{:.1f} of {:.1f} mm", motion->lift, r.planValue()->lift()) : fmt::format("{:.1f} mm", motion->lift), isLess ? &kWarm : nullptr);

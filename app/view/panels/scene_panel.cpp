@@ -170,14 +170,20 @@ void ScenePanel::overlays(Context& context) {
 
   // Numbers of the ribs at their front ends.
   if (context.scene.hasBones && context.scene.skin != SkinLook::natural && context.scene.skin != SkinLook::displacement)
-    if (const RibCage* cage = context.results->cageValue())
+    if (const RibCage* cage = context.results->cageValue()) {
+      std::vector<ImVec2> taken;
       for (const RibCurve& rib : cage->ribs) {
         ImVec2 at;
         if (rib.number == 0 || !viewport_.screen(rib.curve.at(1), at)) continue;
+        // Below those that stand there already.
+        for (const ImVec2& other : taken)
+          if (std::abs(other.x - at.x) < 2 * em && std::abs(other.y - at.y) < 0.9f * em) at.y = other.y + 0.9f * em;
+        taken.push_back(at);
         const std::string label = fmt::format("{}{}", rib.side == Side::right ? "R" : "L", rib.number);
         list->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 170), label.c_str());
         list->AddText(at, IM_COL32(235, 225, 195, 255), label.c_str());
       }
+    }
 
   // Which way the patient lies.
   if (!parts_.skin().points.empty()) {
