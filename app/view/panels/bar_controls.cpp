@@ -27,8 +27,15 @@ void secondBar(Context& context) {
   if (std::none_of(known.begin(), known.end(), [](const Parameter& p) { return p.name == "second_level"; })) return;
   bool isThere = context.catalog.number(context.choices.planner.id, settings, "second_level") != 0;
   if (ImGui::Checkbox("A second bar", &isThere)) {
-    if (isThere) assign(settings, "second_level", kSecondAbove);
-    else std::erase_if(settings, [](const auto& setting) { return aboutOf(setting.first) == About::secondBar; });
+    if (isThere) {
+      // It begins where it changes nothing: at the lift that the first brings about there.
+      assign(settings, "second_level", kSecondAbove);
+      if (const Plan* plan = context.results->planValue(); plan && !plan->bars.empty()) {
+        const Vec3 above = plan->bars.front().point + Vec3{0, 0, kSecondAbove};
+        assign(settings, "second_lift", std::round(10 * std::max(0.0, above.y - plan->motion(above).y)) / 10);
+      }
+    } else { std::erase_if(settings, [](const auto& setting) { return aboutOf(setting.first) == About::secondBar; });
+    }
     context.changed(false);
   }
   mark("bar.second");

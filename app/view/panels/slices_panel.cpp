@@ -78,9 +78,6 @@ void SlicesPanel::outline(const Volume& volume, const Anatomy* anatomy, Plane pl
   for (const SliceContour& c : anatomy->contours) {
     if (c.points.empty()) continue;
     Outline line{structureColor(c.structure), {}, c.closed, false, "", c.side, c.structure == "rib" ? c.number : 0};
-    // A rib that was left out by hand is still in the CT.
-    const bool isLeftOut = line.number > 0 && !anatomy->rib(c.side, c.number);
-    if (isLeftOut) line.color = IM_COL32(130, 135, 142, 255), line.number = 0;
     if (plane == axial) {
       if (c.slice != here) continue;
       for (const Vec3& point : c.points) line.points.push_back(toPlane(point));
