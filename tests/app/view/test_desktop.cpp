@@ -63,10 +63,10 @@ TEST(Idle, NothingAsksForAFrameAndNothingWakesTheWindow) {
   std::atomic<int> wakes{0};
   App app(*target, registry, [&] { ++wakes, wakeWindow(); });
   DisplayHand hand(app, *target);
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(kPatience));
   makeCoarse(app.context().choices);
   hand.click("opening.phantom");
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(kPatience));
   ASSERT_TRUE(app.context().results->motionValue());
   while (target->wait(0.2), app.wantsFrame()) app.frame();
 

@@ -53,7 +53,7 @@ Walk walkThrough(App& app, Hand& hand, const Target& target, const std::string& 
   Walk walk;
   std::tie(walk.width, walk.height) = target.size();
   Context& context = app.context();
-  const auto rested = [&] { EXPECT_TRUE(hand.rest()) << context.activity.stage << " " << context.activity.what; };
+  const auto rested = [&] { EXPECT_TRUE(hand.rest(500)) << context.activity.stage << " " << context.activity.what; };
   const auto skin = [&] { return context.results->motionValue() ? context.results->motionValue()->outer : std::vector<Vec3>{}; };
   rested();
   walk.empty = target.pixels();
