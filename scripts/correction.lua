@@ -7,7 +7,11 @@ local p = parameters{
   { name = "landmarks", role = "input", doc = "Landmarks on the CT's skin and on the scan: name,ct_x,ct_y,ct_z,scan_x,scan_y,scan_z" },
   { name = "registration", default = "rigid", choices = { "rigid", "similarity", "affine" }, doc = "How the scan is brought onto the CT; affine is the paper's" },
   { name = "icp", default = true, doc = "After the landmarks, bring the scan closer by the surfaces that the operation does not change" },
-  { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the deepest point of the sternum" },
+  { name = "lift", default = 30, unit = "mm", range = { 0, 120 }, doc = "How far the bar lifts the sternum: its deepest point, or the one at level" },
+  { name = "level", default = 0, unit = "mm", range = { -150, 150 }, doc = "Height of the bar above (+) or below (-) the deepest point of the sternum" },
+  { name = "tilt", default = 0, unit = "deg", range = { -45, 45 }, doc = "How the bar lies across the chest: the patient's left end higher (+) or lower (-)" },
+  { name = "second_level", default = 0, unit = "mm", range = { -150, 150 }, doc = "Height of a second bar above (+) or below (-) the first; 0: there is none" },
+  { name = "second_lift", default = 20, unit = "mm", range = { 0, 120 }, doc = "How far the second bar lifts the sternum there" },
   { name = "model", default = "two_layer", choices = { "two_layer", "volume_mesh" }, doc = "The wall as two layers of points joined by springs, or as a solid of fat, muscle and bone" },
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
@@ -44,8 +48,8 @@ local wall = { spacing = choice.spacing, effects = effects, accuracy = p.effects
 local scene
 if isLattice then scene = model.two_layer(cage, wall) else scene = model.volume_mesh(cage, ct, wall) end
 
--- Operation: the bar lifts the sternum, the solver finds the skin.
-local plan = planner.nuss(cage, { lift = p.lift })
+-- Operation: the bar lifts the sternum, or two do, and the solver finds the skin.
+local plan = planner.nuss(cage, { lift = p.lift, level = p.level, tilt = p.tilt, second_level = p.second_level, second_lift = p.second_lift })
 local motion = solver[choice.solver](scene, plan, { tolerance = choice.tolerance })
 
 -- What the operation changes, and how far the prediction is from the scan.

@@ -7,6 +7,8 @@ namespace pectora::view {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kSameWarning = 40;   // letters that tell what a warning is about; figures follow
+
 void Layout::load() {
   std::ifstream file(stateFolder() / "layout");
   float l = 0, r = 0, c = 0;
@@ -28,7 +30,10 @@ void Context::refresh() {
   activity = worker_.activity();
   for (LogLine& line : worker_.takeLog()) {
     if (line.kind == LogLine::Kind::error) message = line.text;
-    log.push_back(std::move(line));
+    // What moves warns of the same at every step: the last one stays.
+    const bool isAgain = line.kind == LogLine::Kind::warning && !log.empty() && log.back().kind == line.kind && log.back().text.substr(0, kSameWarning) == line.text.substr(0, kSameWarning);
+    if (isAgain) log.back() = std::move(line);
+    else log.push_back(std::move(line));
   }
   if (log.size() > 2000) log.erase(log.begin(), log.begin() + std::ptrdiff_t(log.size() - 2000));
   {
@@ -44,6 +49,8 @@ void Context::refresh() {
       changed(false);
     }
   }
+  if (results->plan.value != old->plan.value) planFacts = results->planValue() ? results->planValue()->facts() : std::vector<Fact>{};
+  if (results->motion.value != old->motion.value) motionFacts = results->motionValue() ? results->motionValue()->facts() : std::vector<Fact>{};
   // A picked point keeps its springs up to date; another scene has other points.
   if (results->scene.value != old->scene.value) worths.clear();
   if (results->scene.value != old->scene.value || results->plan.value != old->plan.value) study.reset();
@@ -101,6 +108,7 @@ void Context::open(const std::string& given) {
   choices.source = isResult ? Source::result : Source::dicom;
   choices.loader = {isResult ? "" : "loader.dicom", {{"path", path}}};
   choices.ctLandmarks = {};
+  choices.corrections.clear();
   picked.reset();
   changed(false);
 }
@@ -110,6 +118,7 @@ void Context::openPhantom() {
   choices.source = Source::phantom;
   choices.scanPath.clear();
   choices.ctLandmarks = choices.scanLandmarks = {};
+  choices.corrections.clear();
   picked.reset();
   changed(false);
 }

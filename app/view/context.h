@@ -63,6 +63,7 @@ class Context {
   Tab tab = Tab::patient;
   float scale = 1;                     ///< pixels of one unit of the layout
   std::shared_ptr<const Results> results;
+  std::vector<Fact> planFacts, motionFacts;   ///< of the results' plan and motion
   Activity activity;
   std::vector<LogLine> log;
   std::optional<PickedPoint> picked;

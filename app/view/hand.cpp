@@ -14,10 +14,12 @@ bool Hand::rest(double seconds) {
   const auto start = Clock::now();
   int quiet = 0;
   // The worker may be between two pieces of work: it rests when it does for a while.
-  while (quiet < 8) {
+  while (quiet < 3) {
     step();
-    quiet = app_.context().activity.isBusy || app_.wantsFrame() ? 0 : quiet + 1;
-    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+    const bool isBusy = app_.context().activity.isBusy;
+    quiet = isBusy || app_.wantsFrame() ? 0 : quiet + 1;
+    // Drawn in software, frames would take the time of the work.
+    std::this_thread::sleep_for(std::chrono::milliseconds(isBusy ? 50 : 10));
     if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) return false;
   }
   return true;

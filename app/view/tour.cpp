@@ -33,8 +33,14 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   picture("patient");
   hand.click("tab.bar");
   hand.frames(3);
+  // Up, and back to the lift that the phantom's scan shows.
   hand.drag("bar.lift", {0.50f, 0.5f}, {0.60f, 0.5f});
+  hand.drag("bar.lift", {0.60f, 0.5f}, {0.50f, 0.5f});
   picture("bar");
+  hand.click("bar.second");
+  picture("two_bars");
+  hand.click("bar.second");
+  rest();
   hand.click("tab.tissue");
   hand.click("effect.cross.open");
   hand.click("effects.measure");
@@ -45,6 +51,12 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   hand.frames(3);
   hand.click("window.Bone");
   picture("anatomy");
+  hand.click("correct");
+  hand.click("correct.rib");
+  hand.click("correct.Left rib 4");
+  hand.click("correct.notch");
+  picture("corrections");
+  hand.click("correct");
   hand.click("tab.compare");
   picture("compare");
   hand.click("landmarks.place");

@@ -5,7 +5,7 @@
 
 namespace pectora::view {
 
-/// Makes a phantom, goes through the steps, and writes bar.png, tissue.png, anatomy.png and compare.png into options.tour.
+/// Makes a phantom, goes through the steps, and writes a picture of each into options.tour: bar.png, tissue.png, anatomy.png ...
 void takeTour(Registry& registry, const ViewOptions& options);
 
 }  // namespace pectora::view

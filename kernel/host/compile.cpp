@@ -148,38 +148,54 @@ Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
 BarLoad shareLift(const Compiled& compiled, const Plan& plan) {
   double chest = 0, bar = INFINITY;
   for (const auto& [steering, guides] : compiled.steering) {
-    if (steering.chestStiffness) chest += steering.chestStiffness(plan);
-    if (steering.barStiffness) bar = 1 / (1 / bar + 1 / steering.barStiffness(plan));
+    if (steering.chestResistance) chest += steering.chestResistance(plan);
+    if (steering.barResistance) bar = 1 / (1 / bar + 1 / steering.barResistance(plan));
   }
   BarLoad load;
   if (!(chest > 0)) return load;
   load.part = 1 / (1 + chest / bar);
-  load.force = chest * load.part * plan.lift;
+  // The bars' forces F_j = f L_j do the work that the chest takes up: the sum of F_j L_j is that of the chest.
+  double lifts = 0, squares = 0;
+  for (const Bar& lifted : plan.bars) lifts += lifted.lift, squares += lifted.lift * lifted.lift;
+  load.force = squares > 0 ? chest * load.part * lifts / squares : 0;
   return load;
 }
+
+namespace {
+
+// The driven nodes after part t of the plan, of which the part `reached` is carried out.
+std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, const Plan& plan, double reached, double t) {
+  std::vector<Vec3> positions;
+  positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
+  for (const Anchor& anchor : scene.anchors) {
+    positions.push_back(plan.moved(anchor, reached * t));
+    for (const auto& [steering, guides] : compiled.steering)
+      if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
+  }
+  for (const auto& [steering, guides] : compiled.steering)
+    if (guides > 0)
+      for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!isFinite(positions[i]))
+      throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));
+  return positions;
+}
+
+}  // namespace
 
 Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan) {
   const double reached = shareLift(compiled, plan).part;
   Drive drive;
   const std::size_t frames = std::max<std::size_t>(2, plan.frames.size());
-  for (std::size_t f = 0; f < frames; ++f) {
-    const double t = double(f) / double(frames - 1);
-    std::vector<Vec3> positions;
-    positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
-    for (const Anchor& anchor : scene.anchors) {
-      positions.push_back(plan.moved(anchor, reached * t));
-      for (const auto& [steering, guides] : compiled.steering)
-        if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
-    }
-    for (const auto& [steering, guides] : compiled.steering)
-      if (guides > 0)
-        for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      if (!isFinite(positions[i]))
-        throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));
-    drive.frames.push_back(std::move(positions));
-  }
+  for (std::size_t f = 0; f < frames; ++f) drive.frames.push_back(drivenNodes(scene, compiled, plan, reached, double(f) / double(frames - 1)));
   return drive;
+}
+
+Drive makeDriveEnd(const Scene& scene, const Compiled& compiled, const Plan& plan) {
+  const System& system = *compiled.system;
+  std::vector<Vec3> rest;
+  for (std::size_t i = system.freeNodes; i < system.rest.size(); ++i) rest.push_back(system.rest[i]);
+  return {{std::move(rest), drivenNodes(scene, compiled, plan, shareLift(compiled, plan).part, 1)}};
 }
 
 }  // namespace pectora

@@ -43,14 +43,16 @@ enum class CtLoads {
 /// Throws Error if a stiffness or mass is not positive and finite, or a point is held by nothing.
 Compiled compile(const Scene& scene, Registry& registry, CtLoads loads = CtLoads::off);
 
-/// How the bar and the chest share the lift.
+/// How the bars and the chest share the way.
 struct BarLoad {
   double part = 1;       ///< of the planned way that the sternum goes
-  double force = NAN;    ///< of the chest on the bar, N; NAN if no effect knows the chest's stiffness
+  double force = NAN;    ///< of the chest on the bars together, N, each in proportion to its lift; NAN if no effect knows the chest's stiffness
 };
 BarLoad shareLift(const Compiled& compiled, const Plan& plan);
 
 /// Where the driven nodes go while the plan is carried out.
 Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan);
+/// The same on the straight way from rest to the end of the plan, which costs less: for a solve that begins where an earlier one ended.
+Drive makeDriveEnd(const Scene& scene, const Compiled& compiled, const Plan& plan);
 
 }  // namespace pectora

@@ -135,7 +135,7 @@ Solution RegionSolve::solve(const Plan& plan, const Drive& drive, const NodeVect
   prepare(moved, host);
   NodeVectors from = start ? *start : NodeVectors();
   for (int time = 0; time < kMostTimes; ++time) {
-    const Drive partDrive = makeDrive(*part_, compiled_, plan);
+    const Drive partDrive = from.size() ? makeDriveEnd(*part_, compiled_, plan) : makeDrive(*part_, compiled_, plan);
     const NodeVectors partStart = from.size() ? cut(from, partDrive) : NodeVectors();
     PartHost partHost(host, [&](const NodeVectors& part) {
       paste(part, positions);

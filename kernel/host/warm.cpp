@@ -61,8 +61,8 @@ void WarmSolve::prepare(Host& host) {
 
 std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   prepare(host);
-  const Drive drive = makeDrive(*rest_, compiled_, plan);
   const NodeVectors* start = start_.size() ? &start_ : nullptr;
+  const Drive drive = start ? makeDriveEnd(*rest_, compiled_, plan) : makeDrive(*rest_, compiled_, plan);
   Solution solution = region_ ? region_->solve(plan, drive, start, host) : session_->solve(drive, start, host);
 
   auto motion = std::make_shared<Motion>();
@@ -79,7 +79,7 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   motion->inner = layerOf(system.layers - 1);
   motion->anchors = drive.frames.back();
   const BarLoad load = shareLift(compiled_, plan);
-  motion->lift = load.part * plan.lift;
+  motion->lift = load.part * plan.lift();
   motion->barForce = load.force;
   motion->status = solution.status;
   motion->message = std::move(solution.message);

@@ -50,6 +50,7 @@ void takeInput(lua_State* lua, int index, const Port& port, std::vector<Handle>&
 // Calls the plugin whose id is the first upvalue.
 int callPlugin(lua_State* lua) {
   ScriptState& state = ScriptState::of(lua);
+  if (state.onlyParameters) throw ParametersKnown();   // whoever begins to work has none to declare
   const std::string id = lua_tostring(lua, lua_upvalueindex(1));
   const std::vector<Port>& ports = state.runner.ports(id);
   Runner::PortInputs inputs(ports.size());
@@ -116,7 +117,7 @@ int print(lua_State* lua) {
     line += (i > 1 ? "\t" : "") + std::string(luaL_tolstring(lua, i, nullptr));
     lua_pop(lua, 1);
   }
-  ScriptState::of(lua).options.print(line);
+  if (const auto& show = ScriptState::of(lua).options.print) show(line);
   return 0;
 }
 

@@ -11,7 +11,7 @@ namespace pectora {
 /// What a script may do and with what.
 struct ScriptOptions {
   std::vector<std::string> requireFolders;            ///< where `require` looks, besides the script's own folder
-  std::function<void(const std::string&)> print;      ///< a line that the script prints
+  std::function<void(const std::string&)> print;      ///< a line that the script prints; none: nobody reads it
   std::size_t memoryLimit = std::size_t(256) << 20;   ///< bytes of Lua's own memory
 };
 
@@ -24,7 +24,7 @@ class ScriptEngine {
   ScriptEngine(Runner& runner, Registry& registry, std::atomic<bool>& cancel, ScriptOptions options);
   ~ScriptEngine();
 
-  /// The parameters that the script declares with parameters{...}; the script runs only up to there.
+  /// The parameters that the script declares with parameters{...}; it runs only up to there, or to its first call of a stage.
   std::vector<Parameter> parametersOf(const std::string& path);
   /// Runs a script with NAME=VALUE arguments, checked against its declared parameters.
   /// Throws Error, Cancelled or Explained.

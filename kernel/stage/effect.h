@@ -9,8 +9,9 @@ namespace pectora {
 
 /// What an effect changes in how the plan moves the bodies. Called with each plan; what is not set changes nothing.
 struct Steering {
-  /// The bar and the chest share the lift as springs in series: stiffness of either against the deepest point's way, N/mm.
-  std::function<double(const Plan&)> barStiffness, chestStiffness;
+  /// The bars and the chest share the plan's way as springs in series. What each would do against it, N mm: the sum over what gives
+  /// way of stiffness times the square of its way in the whole plan.
+  std::function<double(const Plan&)> barResistance, chestResistance;
   /// How far an anchor goes beside its way in the plan, mm, in equal parts from the beginning to the end.
   std::function<Vec3(const Plan&, const Anchor&)> displacement;
   /// Where the effect's guides lie after part t of the plan.

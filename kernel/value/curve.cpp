@@ -5,16 +5,13 @@
 #include <cmath>
 
 namespace pectora {
+namespace {
 
-std::vector<double> clampedKnots(int controls, int degree) {
-  std::vector<double> knots(controls + degree + 1, 0.0);
-  const int spans = controls - degree;
-  for (int i = 1; i < spans; ++i) knots[degree + i] = double(i) / spans;
-  std::fill(knots.end() - degree - 1, knots.end(), 1.0);
-  return knots;
-}
+constexpr int kMostDegree = 7;
+using Weights = std::array<double, kMostDegree + 1>;
 
-BasisWeights basis(std::span<const double> knots, int degree, double u) {
+// As basis(), into an array of its own: curves are sampled by the hundred thousand. Returns the first control point that matters.
+int findBasis(std::span<const double> knots, int degree, double u, Weights& n) {
   // The knot span that holds u; the last one also holds its right end.
   const int controls = int(knots.size()) - degree - 1;
   u = std::clamp(u, knots[degree], knots[controls]);
@@ -22,8 +19,6 @@ BasisWeights basis(std::span<const double> knots, int degree, double u) {
   span = std::clamp(span, degree, controls - 1);
 
   // Cox and de Boor's recurrence, raising the degree one by one.
-  BasisWeights result{span - degree, std::vector<double>(degree + 1, 0.0)};
-  std::vector<double>& n = result.weights;
   n[0] = 1;
   for (int d = 1; d <= degree; ++d) {
     double saved = 0;
@@ -36,25 +31,43 @@ BasisWeights basis(std::span<const double> knots, int degree, double u) {
     }
     n[d] = saved;
   }
-  return result;
+  return span - degree;
+}
+
+}  // namespace
+
+std::vector<double> clampedKnots(int controls, int degree) {
+  std::vector<double> knots(controls + degree + 1, 0.0);
+  const int spans = controls - degree;
+  for (int i = 1; i < spans; ++i) knots[degree + i] = double(i) / spans;
+  std::fill(knots.end() - degree - 1, knots.end(), 1.0);
+  return knots;
+}
+
+BasisWeights basis(std::span<const double> knots, int degree, double u) {
+  Weights weights;
+  const int first = findBasis(knots, degree, u, weights);
+  return {first, {weights.begin(), weights.begin() + degree + 1}};
 }
 
 Vec3 Curve::at(double u) const {
-  const BasisWeights b = basis(knots, degree, u);
+  Weights weights;
+  const int first = findBasis(knots, degree, u, weights);
   Vec3 p;
-  for (int i = 0; i <= degree; ++i) p += controls[b.first + i] * b.weights[i];
+  for (int i = 0; i <= degree; ++i) p += controls[first + i] * weights[i];
   return p;
 }
 
 Vec3 Curve::derivative(double u) const {
   // The derivative is a spline of one degree less over the inner knots.
   const std::span<const double> inner(knots.data() + 1, knots.size() - 2);
-  const BasisWeights b = basis(inner, degree - 1, u);
+  Weights weights;
+  const int first = findBasis(inner, degree - 1, u, weights);
   Vec3 d;
   for (int i = 0; i < degree; ++i) {
-    const int c = b.first + i;
+    const int c = first + i;
     const double width = knots[c + degree + 1] - knots[c + 1];
-    if (width > 0) d += (controls[c + 1] - controls[c]) * (b.weights[i] * degree / width);
+    if (width > 0) d += (controls[c + 1] - controls[c]) * (weights[i] * degree / width);
   }
   return d;
 }

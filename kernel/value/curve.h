@@ -9,7 +9,7 @@
 namespace pectora {
 
 /// A clamped B-spline: the curve starts at the first control point and ends at the last.
-/// De Boor's recurrence; knots.size() == controls.size() + degree + 1, parameter from 0 to 1.
+/// De Boor's recurrence; knots.size() == controls.size() + degree + 1, parameter from 0 to 1; degree 1 to 7.
 struct Curve {
   int degree = 3;
   std::vector<double> knots;

@@ -21,8 +21,8 @@ struct Motion : Value {
   std::vector<Vec3> outer, inner;           ///< positions after, as in Scene
   std::vector<std::vector<Vec3>> between;   ///< the same of the layers between
   std::vector<Vec3> anchors;                ///< where the plan brought the scene's anchors, and then what effects guide
-  double lift = 0;                          ///< how far the deepest point of the sternum came, mm: less than planned if the bar gives way
-  double barForce = std::numeric_limits<double>::quiet_NaN();   ///< of the chest on the bar, N; NaN if no effect knows it
+  double lift = 0;                          ///< how far the point over the first bar came, mm: less than planned if the bar gives way
+  double barForce = std::numeric_limits<double>::quiet_NaN();   ///< of the chest on all bars together, N; NaN if no effect knows it
   SolveStatus status = SolveStatus::stalled;
   std::string message;                      ///< what is wrong, and where, if not converged
   int iterations = 0;

@@ -10,6 +10,8 @@
 namespace pectora {
 namespace {
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+
 // Deflection of a clamped beam whose other end is guided: 0 to 1, flat at both ends.
 double beam(double s) { return s * s * (3 - 2 * s); }
 
@@ -34,14 +36,23 @@ Curve withBow(const Curve& curve, double scale) {
 // The bow that gives the wanted length, or comes as close as flattening it can. It is never raised: a cartilage that is
 // too long now pushes its rib aside rather than arching forwards.
 Curve withLength(const Curve& curve, double length) {
-  double low = 0, high = 1;
-  if (withBow(curve, low).length() >= length) return withBow(curve, low);
-  if (curve.length() <= length) return curve;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (withBow(curve, middle).length() < length ? low : high) = middle;
+  const Curve flat = withBow(curve, 0);
+  double low = 0, high = 1, tooShort = flat.length() - length, tooLong = curve.length() - length;
+  if (tooShort >= 0) return flat;
+  if (tooLong <= 0) return curve;
+  // Between the two by the chord, where one end is kept twice with half its weight (the Illinois rule).
+  Curve bowed = curve;
+  for (int i = 0, last = 0; i < 50; ++i) {
+    const double scale = (low * tooLong - high * tooShort) / (tooLong - tooShort);
+    bowed = withBow(curve, scale);
+    const double off = bowed.length() - length;
+    if (std::abs(off) < 1e-10 * length) break;
+    const int side = off < 0 ? -1 : 1;
+    if (side < 0) low = scale, tooShort = off, tooLong *= last < 0 ? 0.5 : 1;
+    else high = scale, tooLong = off, tooShort *= last > 0 ? 0.5 : 1;
+    last = side;
   }
-  return withBow(curve, 0.5 * (low + high));
+  return bowed;
 }
 
 }  // namespace
@@ -91,6 +102,8 @@ RigidMotion RigidMotion::part(double t) const {
   return scaled;
 }
 
+double Bar::tiltDeg() const { return std::atan2(-up.x, up.z) * kDegrees; }
+
 Vec3 Plan::moved(const Anchor& anchor, double t) const {
   switch (anchor.body) {
     case BodyKind::rib:
@@ -118,20 +131,28 @@ std::vector<Fact> Plan::facts() const {
   std::optional<PlannedIndices> planned;
   if (cage && cage->anatomy && (planned = plannedIndices(*cage->anatomy, motion))) indices = &*planned;
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return {{"lift", lift, "mm"},
-          {"angle", motion.angle * 180 / std::numbers::pi, "deg"},
-          {"pivot_z", motion.pivot.z, "mm"},
-          {"deepest_x", deepest.x, "mm"},
-          {"deepest_y", deepest.y, "mm"},
-          {"deepest_z", deepest.z, "mm"},
-          {"intercostal_space", double(intercostalSpace), ""},
-          {"worst_cartilage_strain", 100 * worst, "%"},
-          {"depression", indices ? indices->after.depression() : none, "mm"},
-          {"haller_index", indices ? indices->after.haller() : none, ""},
-          {"correction_index", indices ? indices->after.correctionIndex() : none, "%"},
-          {"depression_before", indices ? indices->before.depression() : none, "mm"},
-          {"haller_index_before", indices ? indices->before.haller() : none, ""},
-          {"correction_index_before", indices ? indices->before.correctionIndex() : none, "%"}};
+  std::vector<Fact> facts{{"bars", double(bars.size()), ""}};
+  for (const Bar& bar : bars) {
+    const std::string which = &bar == &bars.front() ? "" : "second_";
+    facts.insert(facts.end(), {{which + "lift", bar.lift, "mm"},
+                               {which + "point_x", bar.point.x, "mm"},
+                               {which + "point_y", bar.point.y, "mm"},
+                               {which + "point_z", bar.point.z, "mm"},
+                               {which + "tilt", bar.tiltDeg(), "deg"},
+                               {which + "intercostal_space_right", double(bar.rightSpace), ""},
+                               {which + "intercostal_space_left", double(bar.leftSpace), ""}});
+  }
+  facts.insert(facts.end(), {{"angle", motion.angle * kDegrees, "deg"},
+                             {"shift", -motion.translation.y, "mm"},
+                             {"pivot_z", motion.pivot.z, "mm"},
+                             {"worst_cartilage_strain", 100 * worst, "%"},
+                             {"depression", indices ? indices->after.depression() : none, "mm"},
+                             {"haller_index", indices ? indices->after.haller() : none, ""},
+                             {"correction_index", indices ? indices->after.correctionIndex() : none, "%"},
+                             {"depression_before", indices ? indices->before.depression() : none, "mm"},
+                             {"haller_index_before", indices ? indices->before.haller() : none, ""},
+                             {"correction_index_before", indices ? indices->before.correctionIndex() : none, "%"}});
+  return facts;
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Plan::parts() const { return {{"cage", cage}}; }

@@ -28,31 +28,37 @@ struct MovedCartilage {
 /// Carries every cartilage along with the sternum. The costochondral end stays with its tangent, the medial end moves
 /// with the sternum (rigidly) or with the cartilage that it joins, and control points between follow like a beam clamped at both ends:
 /// by 3 s^2 - 2 s^3 of the end's displacement at the part s of the length. Where that makes it longer, the bow
-/// between the ends is flattened by bisection until the arc length is the old one; what remains is reported as strain.
+/// between the ends is flattened until the arc length is the old one; what remains is reported as strain.
 /// Returns one entry for each of cage.cartilages, in order.
 std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion& sternum);
 
-/// The bar: a curve across the chest behind the sternum, and its rectangular section.
+/// A bar: a curve across the chest behind the sternum in a plane that holds the y axis, its rectangular section, and what it does.
 struct Bar {
-  std::vector<Vec3> centerline;   ///< from right to left, mm
-  double width = 12.7;            ///< along the body axis, mm
+  Vec3 point{};                   ///< of the sternum's front that it lifts, before
+  double lift = 0;                ///< forward displacement of that point, mm
+  std::vector<Vec3> centerline{}; ///< from right to left, mm; in place
+  Vec3 up{0, 0, 1};               ///< unit normal of its plane, the way of its width; y = 0
+  double width = 12.7;            ///< along `up`, mm
   double height = 3.5;            ///< thickness, mm
+  int rightSpace = 0, leftSpace = 0;   ///< it lies below this rib on that side; 0 if the ribs there were not found
+
+  /// How far its left end lies above its right one, degrees.
+  double tiltDeg() const;
 };
 
 struct Plan : Value {
   static constexpr const char* kName = "Plan";
   std::shared_ptr<const RibCage> cage;
-  Vec3 deepest;                    ///< deepest point of the front of the sternum before
-  double lift = 0;                 ///< forward displacement of that point, mm
+  std::vector<Bar> bars;           ///< one or two
   RigidMotion motion;              ///< of the sternum, complete
-  int intercostalSpace = 0;        ///< the bar lies below this rib; 0 if the ribs there were not found
-  Bar bar;
   /// The cartilages at equal steps of the motion, from rest (first) to complete (last).
   std::vector<std::vector<MovedCartilage>> frames;
 
   const char* kind() const override { return kName; }
   std::vector<Fact> facts() const override;
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
+  /// Of the first bar, mm; 0 without one.
+  double lift() const { return bars.empty() ? 0 : bars.front().lift; }
   /// Where an anchor lies after part t of the motion.
   Vec3 moved(const Anchor& anchor, double t) const;
 };

@@ -47,13 +47,13 @@ void energyCurve(const Motion& motion, float scale) {
 void figuresPanel(Context& context) {
   const Results& r = *context.results;
   if (r.planValue()) {
-    const std::vector<Fact> facts = r.planValue()->facts();
+    const std::vector<Fact>& facts = context.planFacts;
     heading("Plan");
     change(facts, "Haller index", "haller_index", "", 2);
     change(facts, "Correction index", "correction_index", " %", 1);
     change(facts, "Depression", "depression", " mm", 1);
     hint("How far the sternum's back lies behind the most forward inner wall, at the deepest level");
-    row("Lift of the sternum", fmt::format("{:.1f} mm", r.planValue()->lift));
+    row("Lift of the sternum", fmt::format("{:.1f} mm", r.planValue()->lift()));
     if (const double* strain = factOf(facts, "worst_cartilage_strain"))
       row("Worst cartilage strain", fmt::format("{:+.1f} %", *strain), std::abs(*strain) > 5 ? &kWarm : nullptr);
   } else if (const Anatomy* anatomy = r.anatomyValue()) {
@@ -81,10 +81,10 @@ void figuresPanel(Context& context) {
     const bool isGood = motion->status == SolveStatus::converged;
     row("Solver", std::string(statusName(motion->status)), r.isPreview ? &kMuted : isGood ? &kGood : &kBad);
     if (!motion->message.empty()) note(motion->message);
-    if (const double* moved = factOf(motion->facts(), "greatest_skin_displacement")) row("Greatest movement", fmt::format("{:.1f} mm", *moved));
+    if (const double* moved = factOf(context.motionFacts, "greatest_skin_displacement")) row("Greatest movement", fmt::format("{:.1f} mm", *moved));
     if (r.planValue()) {
-      const bool isLess = motion->lift < r.planValue()->lift - 0.05;
-      row("Lift reached", isLess ? fmt::format("{:.1f} of {:.1f} mm", motion->lift, r.planValue()->lift) : fmt::format("{:.1f} mm", motion->lift), isLess ? &kWarm : nullptr);
+      const bool isLess = motion->lift < r.planValue()->lift() - 0.05;
+      row("Lift reached", isLess ? fmt::format("{:.1f} of {:.1f} mm", motion->lift, r.planValue()->lift()) : fmt::format("{:.1f} mm", motion->lift), isLess ? &kWarm : nullptr);
       hint("How far the bar brings the deepest point of the sternum: less than planned where effect.bar_compliance lets it bend");
     }
     row("Force on the bar", std::isfinite(motion->barForce) ? fmt::format("{:.0f} N", motion->barForce) : "–");

@@ -14,12 +14,10 @@ namespace pectora::view {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kMiddleOfBar = 60;   // beyond it to either side the mouse tilts the bar, mm
 
-double settingOf(Context& context, const PluginChoice& plugin, const std::string& name) {
-  if (const SettingValue* value = find(plugin.settings, name)) return std::get<double>(*value);
-  for (const Parameter& p : context.catalog.parameters(plugin.id))
-    if (p.name == name) return std::get<double>(p.value);
-  return 0;
+double plannerSetting(Context& context, const std::string& name) {
+  return context.catalog.number(context.choices.planner.id, context.choices.planner.settings, name);
 }
 
 }  // namespace
@@ -96,15 +94,15 @@ void ScenePanel::draw(Context& context, float width, float height) {
   setClip(context);
   parts_.update(context);
   // A new patient is shown whole, from the front and a little from above and the left.
-  const std::shared_ptr<const void> scene = context.results->after.value ? context.results->after.value : context.results->cage.value;
-  if (scene && framed_ != scene && !parts_.skin().points.empty()) {
+  const std::shared_ptr<const void> patient = context.results->after.value ? context.results->after.value : context.results->ct.value;
+  if (patient && framed_ != patient && !parts_.skin().points.empty()) {
     if (!framed_) viewport_.camera.yaw = 0.45, viewport_.camera.pitch = 0.18;
     const auto [center, radius] = parts_.bounds();
     viewport_.camera.frame(center, radius);
-    framed_ = scene;
+    framed_ = patient;
   }
   const float left = ImGui::GetContentRegionAvail().x, below = height - (ImGui::GetCursorPosY());
-  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, holdsBar_);
+  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, held_.has_value());
   mark("scene");
   mouse(context, input);
   viewport_.draw(renderer_, parts_.items(context), context.scene.clip, parts_.version(), context.scale);
@@ -116,41 +114,52 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
   if (input.isPressed && context.scene.hasBar) {
     // The bar can be taken where nothing opaque lies before it.
     const Ray ray = viewport_.camera.ray(input.at.x, input.at.y);
-    const auto bar = pick(parts_.barHandle(), ray);
-    const auto skin = context.scene.skin == SkinLook::natural || context.scene.skin == SkinLook::displacement ? pick(parts_.skin(), ray) : std::nullopt;
-    if (bar && !(skin && skin->distance < bar->distance)) {
-      holdsBar_ = true;
-      grabbedAt_ = bar->position;
+    const bool isOpaque = context.scene.skin == SkinLook::natural || context.scene.skin == SkinLook::displacement;
+    const auto skin = isOpaque ? pick(parts_.skin(), ray) : std::nullopt;
+    double nearest = skin ? skin->distance : INFINITY;
+    for (std::size_t i = 0; i < parts_.barHandles().size(); ++i)
+      if (const auto hit = pick(parts_.barHandles()[i], ray); hit && hit->distance < nearest) {
+        nearest = hit->distance;
+        held_ = int(i);
+        grabbedAt_ = hit->position;
+      }
+    if (held_) {
+      const std::string which = *held_ == 0 ? "" : "second_";
       grabbedMouse_ = input.at;
-      liftAtGrab_ = settingOf(context, context.choices.planner, "lift");
-      levelAtGrab_ = settingOf(context, context.choices.planner, "level");
+      atGrab_ = {plannerSetting(context, which + "lift"), plannerSetting(context, which + "level"), plannerSetting(context, which + "tilt")};
     }
   }
-  if (holdsBar_) dragBar(context, input);
+  if (held_) dragBar(context, input);
   else if (input.isClicked) {
     if (const auto hit = pick(parts_.skin(), viewport_.camera.ray(input.at.x, input.at.y)); hit && context.scene.skin != SkinLook::hidden) context.pickPoint(hit->point);
     else context.picked.reset();
   }
 }
 
-// The bar follows the mouse in the plane of the picture: up and down is its level, forwards its lift.
+// A bar follows the mouse in the plane of the picture. Its middle: up and down is its level, forwards its lift; beyond, its tilt.
 void ScenePanel::dragBar(Context& context, const ViewportInput& input) {
   const Camera& camera = viewport_.camera;
   const double mm = camera.heightAt(norm(grabbedAt_ - camera.eye()));
   const double dx = (input.at.x - grabbedMouse_.x) * camera.aspect * mm, dy = (grabbedMouse_.y - input.at.y) * mm;
   const Vec3 moved = camera.right() * dx + camera.up() * dy;
-  Settings& settings = context.choices.planner.settings;
+  const Plan* plan = context.results->planValue();
+  const double aside = plan && std::size_t(*held_) < plan->bars.size() ? grabbedAt_.x - plan->bars[*held_].point.x : 0;
+  const bool isEnd = std::abs(aside) > kMiddleOfBar && std::abs(camera.right().x) > 0.7;   // from the side one end hides all the bar
+  const std::string which = *held_ == 0 ? "" : "second_";
   bool isChanged = false;
   for (const Parameter& p : context.catalog.parameters(context.choices.planner.id)) {
-    if (p.name != "lift" && p.name != "level") continue;
-    const double wanted = p.name == "lift" ? liftAtGrab_ - moved.y : levelAtGrab_ + moved.z;
+    double wanted = 0;
+    if (!isEnd && p.name == which + "lift") wanted = atGrab_.lift - moved.y;
+    else if (!isEnd && p.name == which + "level") wanted = atGrab_.level + moved.z;
+    else if (isEnd && p.name == which + "tilt") wanted = atGrab_.tilt + std::atan(moved.z / aside) * 180 / kPi;
+    else continue;
     const double value = std::round(10 * std::clamp(wanted, p.usual.low, p.usual.high)) / 10;
-    if (settingOf(context, context.choices.planner, p.name) == value) continue;
-    assign(settings, p.name, value);
+    if (plannerSetting(context, p.name) == value) continue;
+    assign(context.choices.planner.settings, p.name, value);
     isChanged = true;
   }
-  if (!input.isHeld) holdsBar_ = false;
-  if (isChanged || !holdsBar_) context.changed(holdsBar_);
+  if (!input.isHeld) held_.reset();
+  if (isChanged || !held_) context.changed(held_.has_value());
 }
 
 void ScenePanel::overlays(Context& context) {
@@ -161,14 +170,20 @@ void ScenePanel::overlays(Context& context) {
 
   // Numbers of the ribs at their front ends.
   if (context.scene.hasBones && context.scene.skin != SkinLook::natural && context.scene.skin != SkinLook::displacement)
-    if (const RibCage* cage = context.results->cageValue())
+    if (const RibCage* cage = context.results->cageValue()) {
+      std::vector<ImVec2> taken;
       for (const RibCurve& rib : cage->ribs) {
         ImVec2 at;
         if (rib.number == 0 || !viewport_.screen(rib.curve.at(1), at)) continue;
+        // Below those that stand there already.
+        for (const ImVec2& other : taken)
+          if (std::abs(other.x - at.x) < 2 * em && std::abs(other.y - at.y) < 0.9f * em) at.y = other.y + 0.9f * em;
+        taken.push_back(at);
         const std::string label = fmt::format("{}{}", rib.side == Side::right ? "R" : "L", rib.number);
         list->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 170), label.c_str());
         list->AddText(at, IM_COL32(235, 225, 195, 255), label.c_str());
       }
+    }
 
   // Which way the patient lies.
   if (!parts_.skin().points.empty()) {
@@ -201,7 +216,7 @@ void ScenePanel::overlays(Context& context) {
       list->AddText(corner, IM_COL32(230, 235, 240, 255), text.c_str());
     }
   }
-  if (holdsBar_ || context.results->isPreview) {
+  if (held_ || context.results->isPreview) {
     const std::string text = context.results->isPreview ? "solving…" : fmt::format("{:.0f} ms", context.results->liveMs);
     list->AddText({low.x + em, low.y + size.y - 1.8f * em}, IM_COL32(170, 180, 190, 255), text.c_str());
   }

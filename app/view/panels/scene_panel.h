@@ -27,10 +27,12 @@ class ScenePanel {
   const Renderer& renderer_;
   SceneParts parts_;
   Viewport viewport_;
-  std::shared_ptr<const void> framed_;   // the scene that the camera was set for
-  bool holdsBar_ = false;
-  Vec3 grabbedAt_;                       // where the bar was taken, LPS
-  double liftAtGrab_ = 0, levelAtGrab_ = 0;
+  std::shared_ptr<const void> framed_;   // the patient that the camera was set for
+  std::optional<int> held_;              // index of the bar that the mouse holds
+  Vec3 grabbedAt_;                       // where it was taken, LPS
+  struct {
+    double lift = 0, level = 0, tilt = 0;
+  } atGrab_;                             // its settings then
   ImVec2 grabbedMouse_{};
   bool isAtEnd_ = true;                  // the part slider is at "after"
 };

@@ -32,15 +32,17 @@ void SceneParts::updateSkin(const Context& context) {
   const float part = context.scene.part;
   const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value;
   if (skinOf_ == r.skin && sceneOf_ == made && skinPart_ == part) return;
+  // While the bar moves, the triangles stay.
+  const bool isKnown = made && sceneOf_ == made;
   skinOf_ = r.skin, sceneOf_ = made, skinPart_ = part;
   ++version_;
-  skin_ = {};
+  if (!isKnown) skin_ = {};
   const Mesh *before = Results::as<Mesh>(r.before), *kept = Results::as<Mesh>(r.after);
   if (scene || (before && kept)) {
     const std::vector<Vec3>& rest = scene ? scene->outer : before->points;
-    skinAtRest_ = rest;
+    if (!isKnown) skinAtRest_ = rest;
     const std::vector<Vec3>& after = !scene ? kept->points : r.skin && r.skin->size() == rest.size() ? *r.skin : rest;
-    skin_.triangles = scene ? layerMesh(scene->rows, scene->columns, {}).triangles : before->triangles;
+    if (!isKnown) skin_.triangles = scene ? layerMesh(scene->rows, scene->columns, {}).triangles : before->triangles;
     skin_.points.resize(rest.size());
     skin_.values.resize(rest.size());
     for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -50,7 +52,7 @@ void SceneParts::updateSkin(const Context& context) {
     skin_.computeNormals();
     displacementLimit_ = roundLimit(skin_.values.data(), skin_.values.size());
   }
-  gpuSkin_.upload(skin_);
+  isKnown ? gpuSkin_.uploadPoints(skin_) : gpuSkin_.upload(skin_);
 }
 
 void SceneParts::updateBones(const Context& context) {
@@ -76,7 +78,7 @@ void SceneParts::updateBones(const Context& context) {
   movedOf_ = moved, movedPart_ = context.scene.part;
   ++version_;
   Surface cartilages, sternum = sternumAtRest_, bar;
-  barHandle_ = {};
+  barHandles_.clear();
   if (cage) {
     const double t = context.scene.part;
     for (std::size_t i = 0; i < cage->cartilages.size(); ++i) {
@@ -94,8 +96,10 @@ void SceneParts::updateBones(const Context& context) {
     const RigidMotion motion = plan->motion.part(context.scene.part);
     for (Vec3& p : sternum.points) p = motion(p);
     for (Vec3& n : sternum.normals) n = motion.rotate(n);
-    bar = sweptBar(plan->bar.centerline, plan->bar.width, plan->bar.height);
-    barHandle_ = tube(plan->bar.centerline, 0.8 * plan->bar.width, 6);
+    for (const Bar& one : plan->bars) {
+      bar.append(sweptBar(one.centerline, one.up, one.width, one.height));
+      barHandles_.push_back(tube(one.centerline, 0.8 * one.width, 6));
+    }
   }
   if (const Mesh* kept = Results::as<Mesh>(r.barMesh)) {
     bar.points = kept->points, bar.triangles = kept->triangles;

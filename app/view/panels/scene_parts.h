@@ -15,8 +15,8 @@ class SceneParts {
   std::uint64_t version() const { return version_; }
 
   const Surface& skin() const { return skin_; }
-  /// The middle of the bar, thick enough to be taken with the mouse.
-  const Surface& barHandle() const { return barHandle_; }
+  /// The bars, thick enough to be taken with the mouse.
+  const std::vector<Surface>& barHandles() const { return barHandles_; }
   /// The figure that colours the scene, with the ends of its range: null if nothing is coloured.
   const char* coloring(const Context& context) const;
   ColorMap map(const Context& context) const;
@@ -31,7 +31,8 @@ class SceneParts {
   void updateScan(const Context& context);
   void updatePicked(const Context& context);
 
-  Surface skin_, barHandle_, sternumAtRest_;
+  Surface skin_, sternumAtRest_;
+  std::vector<Surface> barHandles_;
   GpuSurface gpuSkin_, gpuRibs_, gpuCartilages_, gpuSternum_, gpuBar_, gpuScan_, gpuSprings_, gpuPicked_;
   std::vector<Vec3> skinAtRest_;
   double displacementLimit_ = 1, distanceLimit_ = 1;

@@ -10,6 +10,8 @@
 namespace pectora::view {
 namespace {
 
+constexpr float kJointReach = 10;   // units of the layout from a joint's middle to a press that takes it
+constexpr double kJointDepth = 4;   // joints are shown so near to a plane, mm
 constexpr const char* kNames[] = {"Axial", "Sagittal", "Coronal"};
 // Axis of the volume that goes through each plane, and those across and down its picture.
 constexpr int kThrough[] = {2, 0, 1}, kAcross[] = {0, 1, 0}, kDown[] = {1, 2, 2};
@@ -20,13 +22,14 @@ double spacingOf(const Volume& volume, int axis) { return volume.grid.spacing[ax
 
 void SlicesPanel::open(const Volume& volume, const Anatomy* anatomy) {
   // Begin at the deepest point of the sternum, where there is one.
-  const Grid& grid = volume.grid;
-  for (int a = 0; a < 3; ++a) at_[a] = grid.size[a] / 2;
-  if (anatomy && !anatomy->sternum.contours.empty()) {
-    const Vec3 v = grid.toVoxel(anatomy->sternum.deepest);
-    for (int a = 0; a < 3; ++a) at_[a] = std::clamp(int(std::lround(v[a])), 0, grid.size[a] - 1);
-  }
+  for (int a = 0; a < 3; ++a) at_[a] = volume.grid.size[a] / 2;
+  if (anatomy && !anatomy->sternum.contours.empty()) goTo(volume, anatomy->sternum.deepest);
   for (PlaneState& p : planes_) p.shown = -1;
+}
+
+void SlicesPanel::goTo(const Volume& volume, Vec3 place) {
+  const Vec3 v = volume.grid.toVoxel(place);
+  for (int a = 0; a < 3; ++a) at_[a] = std::clamp(int(std::lround(v[a])), 0, volume.grid.size[a] - 1);
 }
 
 // Voxel coordinates to mm across and down a plane's picture. The head is up in the sagittal and coronal planes.
@@ -34,6 +37,14 @@ ImVec2 SlicesPanel::onPlane(Vec3 voxel, Plane plane) const {
   const PlaneState& p = planes_[plane];
   const double across = voxel[kAcross[plane]], down = voxel[kDown[plane]];
   return {float((across + 0.5) * p.mmAcross), float((plane == axial ? down + 0.5 : p.rows - 0.5 - down) * p.mmDown)};
+}
+
+Vec3 SlicesPanel::underPlace(ImVec2 mm, Plane plane) const {
+  const PlaneState& p = planes_[plane];
+  Vec3 voxel{double(at_[0]), double(at_[1]), double(at_[2])};
+  voxel[kAcross[plane]] = mm.x / p.mmAcross - 0.5;
+  voxel[kDown[plane]] = plane == axial ? mm.y / p.mmDown - 0.5 : p.rows - 0.5 - mm.y / p.mmDown;
+  return voxel;
 }
 
 void SlicesPanel::fill(const Volume& volume, Plane plane) {
@@ -66,11 +77,11 @@ void SlicesPanel::outline(const Volume& volume, const Anatomy* anatomy, Plane pl
   const auto toPlane = [&](Vec3 patient) { return onPlane(grid.toVoxel(patient), plane); };
   for (const SliceContour& c : anatomy->contours) {
     if (c.points.empty()) continue;
-    Outline line{structureColor(c.structure), {}, c.closed, false, ""};
+    Outline line{structureColor(c.structure), {}, c.closed, false, "", c.side, c.structure == "rib" ? c.number : 0};
     if (plane == axial) {
       if (c.slice != here) continue;
       for (const Vec3& point : c.points) line.points.push_back(toPlane(point));
-      if (c.structure == "rib" && c.number > 0) line.label = fmt::format("{}{}", c.side == Side::right ? "R" : "L", c.number);
+      if (line.number > 0) line.label = fmt::format("{}{}", c.side == Side::right ? "R" : "L", c.number);
     } else {
       // Where the outline of its slice passes the plane.
       line.isDots = true;
@@ -105,15 +116,9 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
   const auto toScreen = [&](ImVec2 mm) { return ImVec2{corner.x + mm.x * scale, corner.y + mm.y * scale}; };
 
   const ImGuiIO& io = ImGui::GetIO();
-  const auto voxelUnderMouse = [&] {
-    std::array<int, 3> v = at_;
-    const double x = (io.MousePos.x - corner.x) / scale / p.mmAcross - 0.5, y = (io.MousePos.y - corner.y) / scale / p.mmDown - 0.5;
-    v[kAcross[plane]] = int(std::lround(x));
-    v[kDown[plane]] = int(std::lround(plane == axial ? y : p.rows - 1 - y));
-    return v;
-  };
+  const Vec3 under = underPlace({(io.MousePos.x - corner.x) / scale, (io.MousePos.y - corner.y) / scale}, plane);
+  const std::array<int, 3> v{int(std::lround(under.x)), int(std::lround(under.y)), int(std::lround(under.z))};
   if (ImGui::IsItemHovered()) {
-    const auto v = voxelUnderMouse();
     bool isInside = true;
     for (int a = 0; a < 3; ++a) isInside = isInside && v[a] >= 0 && v[a] < volume.grid.size[a];
     if (isInside) {
@@ -125,8 +130,11 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
     else if (io.MouseWheel != 0) at_[through] = std::clamp(at_[through] + int(io.MouseWheel), 0, volume.grid.size[through] - 1);
   }
   if (ImGui::IsItemActive()) {
-    if (ImGui::IsMouseDown(0)) {
-      const auto v = voxelUnderMouse();
+    if (ImGui::IsMouseDown(0) && corrections_.isOn()) {
+      const Vec3 at = volume.grid.toPatient(under);
+      if (ImGui::IsItemActivated()) corrections_.press(context, at, kJointReach / scale * context.scale);
+      else if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) corrections_.hold(at);
+    } else if (ImGui::IsMouseDown(0)) {
       for (int a : {kAcross[plane], kDown[plane]}) at_[a] = std::clamp(v[a], 0, volume.grid.size[a] - 1);
     } else if (ImGui::IsMouseDown(1)) {
       width_ = std::clamp(width_ + 4 * io.MouseDelta.x, 20.f, 4000.f);
@@ -135,6 +143,7 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
       p.pan = {p.pan.x + io.MouseDelta.x, p.pan.y + io.MouseDelta.y};
     }
   }
+  if (ImGui::IsItemDeactivated()) corrections_.release(context);
   if (p.zoom == 1) p.pan = {0, 0};
 
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -147,9 +156,11 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
       for (ImVec2 mm : o.points) points.push_back(toScreen(mm));
       if (o.isDots)
         for (ImVec2 at : points) list->AddRectFilled({at.x - context.scale, at.y - context.scale}, {at.x + context.scale, at.y + context.scale}, o.color);
-      else list->AddPolyline(points.data(), int(points.size()), o.color, o.isClosed ? ImDrawFlags_Closed : 0, 1.4f * context.scale);
+      else list->AddPolyline(points.data(), int(points.size()), o.color, o.isClosed ? ImDrawFlags_Closed : 0, (corrections_.isChosen(o.side, o.number) ? 2.8f : 1.4f) * context.scale);
       if (hasLabels_ && !o.label.empty()) list->AddText({points.front().x + 3, points.front().y + 3}, o.color, o.label.c_str());
     }
+
+  drawJoints(context, volume, plane, corner, scale);
 
   // The other two planes, and which side is which.
   const ImVec2 cross = toScreen(onPlane({double(at_[0]), double(at_[1]), double(at_[2])}, plane));
@@ -164,6 +175,22 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
   list->AddText({low.x + 0.5f * em, low.y + size.y / 2}, IM_COL32(190, 200, 210, 255), kSides[plane][0]);
   list->AddText({low.x + size.x - 1.2f * em, low.y + size.y / 2}, IM_COL32(190, 200, 210, 255), kSides[plane][1]);
   list->PopClipRect();
+}
+
+// The joints of the rib that is being corrected, where they lie near the plane.
+void SlicesPanel::drawJoints(Context& context, const Volume& volume, Plane plane, ImVec2 corner, float scale) {
+  const int through = kThrough[plane];
+  const float em = ImGui::GetFontSize(), radius = 0.36f * em;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (const JointHandle& handle : corrections_.handles(context)) {
+    const Vec3 voxel = volume.grid.toVoxel(handle.at);
+    if (std::abs(voxel[through] - at_[through]) * spacingOf(volume, through) > kJointDepth) continue;
+    const ImVec2 mm = onPlane(voxel, plane), at{corner.x + mm.x * scale, corner.y + mm.y * scale};
+    list->AddCircleFilled(at, radius, handle.isHeld ? IM_COL32(255, 220, 130, 255) : IM_COL32(250, 160, 70, 255));
+    list->AddCircle(at, radius, IM_COL32(20, 22, 26, 255), 0, 1.5f * context.scale);
+    list->AddText({at.x + radius + 3, at.y - 0.5f * em}, IM_COL32(255, 200, 130, 255), handle.name.c_str());
+    markPlace(std::string("slice.") + kNames[plane] + "." + handle.name, {at.x - radius, at.y - radius}, {2 * radius, 2 * radius});
+  }
 }
 
 void SlicesPanel::draw(Context& context, float width, float height) {
@@ -225,7 +252,9 @@ void SlicesPanel::controls(Context& context) {
     ImGui::SliderInt(kLabels[a], &at_[a], 0, volume->grid.size[a] - 1);
     mark(std::string("slice.at.") + kLabels[a]);
   }
-  note("The wheel leafs, Ctrl with the wheel zooms, a click moves the planes, a right drag sets the grey scale.");
+  note("The wheel leafs, Ctrl with the wheel zooms, a click moves the planes (but for corrections), a right drag sets the grey scale.");
+
+  if (const auto place = corrections_.controls(context)) goTo(*volume, *place);
 
   heading("Found in it");
   ImGui::Checkbox("Outlines", &hasOutlines_);

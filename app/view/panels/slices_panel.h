@@ -1,7 +1,7 @@
 // The CT in three planes, with what was found in it.
 #pragma once
 
-#include "app/view/context.h"
+#include "app/view/panels/corrections_panel.h"
 
 #include <imgui.h>
 
@@ -21,6 +21,8 @@ class SlicesPanel {
     std::vector<ImVec2> points;
     bool isClosed = false, isDots = false;
     std::string label;
+    Side side = Side::right;
+    int number = 0;                // of a rib
   };
   struct PlaneState {
     Picture picture;
@@ -35,7 +37,11 @@ class SlicesPanel {
   void fill(const Volume& volume, Plane plane);
   void outline(const Volume& volume, const Anatomy* anatomy, Plane plane);
   void drawPlane(Context& context, const Volume& volume, Plane plane, ImVec2 size);
+  void drawJoints(Context& context, const Volume& volume, Plane plane, ImVec2 corner, float scale);
   ImVec2 onPlane(Vec3 voxel, Plane plane) const;
+  /// Voxel coordinates under a place of the picture, in the plane that is shown.
+  Vec3 underPlace(ImVec2 mm, Plane plane) const;
+  void goTo(const Volume& volume, Vec3 place);
 
   PlaneState planes_[3];
   std::shared_ptr<const void> volume_, anatomy_;
@@ -44,6 +50,7 @@ class SlicesPanel {
   float shownCenter_ = 0, shownWidth_ = 0;
   bool hasOutlines_ = true, hasLabels_ = true;
   std::string underCursor_;
+  CorrectionsPanel corrections_;
 };
 
 }  // namespace pectora::view

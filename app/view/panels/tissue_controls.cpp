@@ -131,15 +131,15 @@ void presetControls(Context& context) {
 void tissueControls(Context& context) {
   heading("Effects of this scene");
   for (EffectChoice& effect : context.choices.effects) effectControls(context, effect);
+  ImGui::BeginDisabled(!context.results->motionValue());
+  if (button("Measure what each changes", "effects.measure", {-1, 0})) context.measureEffects();
+  ImGui::EndDisabled();
   std::vector<std::string> others = context.catalog.ids("effect");
   std::erase_if(others, [&](const std::string& id) {
     return std::any_of(context.choices.effects.begin(), context.choices.effects.end(), [&](const EffectChoice& e) { return e.plugin.id == id; });
   });
   if (!others.empty()) heading("More effects");
   for (const std::string& id : others) otherEffect(context, id);
-  ImGui::BeginDisabled(!context.results->motionValue());
-  if (button("Measure what each changes", "effects.measure", {-1, 0})) context.measureEffects();
-  ImGui::EndDisabled();
 
   heading("Model");
   if (const auto id = pluginList(context, "model", context.choices.model.id, "cage")) {

@@ -42,6 +42,7 @@ void mark(const std::string& name) {
   const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
   if (ImGui::IsItemVisible()) marks[name] = {low.x, low.y, size.x, size.y};
 }
+void markPlace(const std::string& name, ImVec2 low, ImVec2 size) { marks[name] = {low.x, low.y, size.x, size.y}; }
 const std::map<std::string, ImVec4>& markedItems() { return marks; }
 void forgetMarks() { marks.clear(); }
 

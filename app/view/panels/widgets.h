@@ -24,6 +24,8 @@ ImU32 structureColor(const std::string& structure);
 
 /// Remembers where the last item is, by a name that does not change: for scripted input, in tests and tours.
 void mark(const std::string& name);
+/// The same for what is drawn without an item of its own.
+void markPlace(const std::string& name, ImVec2 low, ImVec2 size);
 /// Rectangles of the items that the last frame showed: x, y, width, height in pixels.
 const std::map<std::string, ImVec4>& markedItems();
 void forgetMarks();

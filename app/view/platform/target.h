@@ -25,13 +25,18 @@ class Target {
   virtual void end() = 0;
   /// Waits for something to happen, at most `seconds`. False if the user has closed the window.
   virtual bool wait(double seconds) = 0;
-  /// Paths dropped on the window since the last call.
-  virtual std::vector<std::string> takeDropped() { return {}; }
+  /// Paths are dropped on the window.
+  void drop(std::vector<std::string> paths) { dropped_.insert(dropped_.end(), paths.begin(), paths.end()); }
+  /// Paths dropped since the last call.
+  std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
   /// Pixels of the last frame, rows from the top, RGBA.
   std::vector<unsigned char> pixels() const;
 
  protected:
   virtual unsigned readFramebuffer() const = 0;
+
+ private:
+  std::vector<std::string> dropped_;
 };
 
 /// Throws Error without a display or OpenGL 3.3. `scale` 0: as the display says.

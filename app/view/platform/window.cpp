@@ -35,8 +35,7 @@ class Window final : public Target {
     glfwSetWindowSizeLimits(window_, int(960 * scale_), int(600 * scale_), GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
-      auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
-      dropped.insert(dropped.end(), paths, paths + count);
+      static_cast<Window*>(glfwGetWindowUserPointer(window))->drop({paths, paths + count});
     });
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
       if (key == GLFW_KEY_Q && action == GLFW_PRESS && (modifiers & GLFW_MOD_CONTROL)) glfwSetWindowShouldClose(window, GLFW_TRUE);
@@ -82,7 +81,6 @@ class Window final : public Target {
     else glfwPollEvents();
     return !glfwWindowShouldClose(window_);
   }
-  std::vector<std::string> takeDropped() override { return std::exchange(dropped_, {}); }
 
  protected:
   unsigned readFramebuffer() const override { return frame_->framebuffer(); }
@@ -94,7 +92,6 @@ class Window final : public Target {
   }
   GLFWwindow* window_ = nullptr;
   float scale_ = 1;
-  std::vector<std::string> dropped_;
   std::unique_ptr<Frame> frame_;
 };
 

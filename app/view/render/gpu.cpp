@@ -10,7 +10,8 @@ namespace {
 
 int live = 0;
 
-unsigned compileShader(unsigned kind, const char* source) {
+unsigned compileShader(unsigned kind, const std::string& text) {
+  const char* source = text.c_str();
   const unsigned shader = glCreateShader(kind);
   glShaderSource(shader, 1, &source, nullptr);
   glCompileShader(shader);
@@ -58,7 +59,7 @@ GpuObject::~GpuObject() {
   --live;
 }
 
-Program::Program(const char* vertexSource, const char* fragmentSource) {
+Program::Program(const std::string& vertexSource, const std::string& fragmentSource) {
   const unsigned vertex = compileShader(GL_VERTEX_SHADER, vertexSource), fragment = compileShader(GL_FRAGMENT_SHADER, fragmentSource);
   glAttachShader(object_.id(), vertex);
   glAttachShader(object_.id(), fragment);

@@ -36,7 +36,7 @@ class GpuObject {
 /// A linked shader program. Throws std::logic_error with the log if it does not compile: the source is ours.
 class Program {
  public:
-  Program(const char* vertexSource, const char* fragmentSource);
+  Program(const std::string& vertexSource, const std::string& fragmentSource);
   void use() const;
   int uniform(const char* name) const;
 

@@ -9,33 +9,37 @@ namespace {
 
 constexpr float kUnknown = -1e30f;   // a value that is not known, for the shader
 
-constexpr const char* kSurfaceVertex = R"(#version 330 core
-layout(location = 0) in vec3 position;
+// Cut: of what lies before a plane nothing is drawn. A program of its own, as the others pay for it, too.
+constexpr const char* kPlain = "#version 330 core\n";
+constexpr const char* kCut = "#version 330 core\n#define CUT\n";
+
+constexpr const char* kSurfaceVertex = R"(layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float value;
 uniform mat4 matrix;
+uniform vec4 clip;
 uniform float pointSize;
 out vec3 place, across;
 out float figure;
 void main() {
   gl_Position = matrix * vec4(position, 1);
   gl_PointSize = pointSize;
+#ifdef CUT
+  gl_ClipDistance[0] = clip.w - dot(clip.xyz, position);
+#endif
   place = position;
   across = normal;
   figure = value;
 })";
 
 // A key light over the viewer's shoulder, a soft one from below, and a little gloss.
-constexpr const char* kSurfaceFragment = R"(#version 330 core
-in vec3 place, across;
+constexpr const char* kSurfaceFragment = R"(in vec3 place, across;
 in float figure;
 uniform vec3 eye, keyLight, color, stops[9];
-uniform vec4 clip;
 uniform float low, high;
 uniform int isMapped, isGlass;
 out vec4 shade;
 void main() {
-  if (dot(clip.xyz, place) > clip.w) discard;
   vec3 base = color;
   if (isMapped == 1) {
     float x = clamp((figure - low) / (high - low), 0.0, 1.0) * 8.0;
@@ -52,12 +56,12 @@ void main() {
   float gloss = pow(max(dot(n, normalize(keyLight + toEye)), 0.0), 40.0) * (isMapped == 1 ? 0.04 : 0.12);
   vec3 lit = base * (0.30 + 0.22 * facing + 0.55 * key) * back + gloss;
   float rim = 1.0 - facing;
-  shade = isGlass == 1 ? vec4(lit + 0.1, 0.16 + 0.55 * rim * rim) : vec4(lit, 1.0);
+  shade = isGlass == 1 ? vec4(mix(lit, vec3(0.78, 0.84, 0.88), 0.6), 0.10 + 0.60 * rim * rim) : vec4(lit, 1.0);
 })";
 
 }  // namespace
 
-void GpuSurface::upload(const Surface& surface) {
+void GpuSurface::uploadPoints(const Surface& surface) {
   const std::size_t count = surface.points.size();
   staging_.resize(count * 7);
   for (std::size_t i = 0; i < count; ++i) {
@@ -79,22 +83,31 @@ void GpuSurface::upload(const Surface& surface) {
     glVertexAttribPointer(k, sizes[k], GL_FLOAT, GL_FALSE, 7 * sizeof(float), reinterpret_cast<const void*>(offset));
     offset += std::size_t(sizes[k]) * sizeof(float);
   }
+  glBindVertexArray(0);
+}
+
+void GpuSurface::upload(const Surface& surface) {
+  uploadPoints(surface);
+  glBindVertexArray(array_.id());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.id());
   indices_ = surface.triangles.size() * 3;
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(indices_ * sizeof(int)), surface.triangles.data(), GL_STATIC_DRAW);
   glBindVertexArray(0);
 }
 
-Renderer::Renderer() : surfaces_(kSurfaceVertex, kSurfaceFragment) {}
+Renderer::Renderer()
+    : plain_(std::string(kPlain) + kSurfaceVertex, std::string(kPlain) + kSurfaceFragment),
+      cut_(std::string(kCut) + kSurfaceVertex, std::string(kCut) + kSurfaceFragment) {}
 
-void Renderer::drawItem(const Item& item) const {
+void Renderer::drawItem(const Program& program, const Item& item) const {
   const Look& look = item.look;
-  glUniform3fv(surfaces_.uniform("color"), 1, look.color.data());
-  glUniform1i(surfaces_.uniform("isMapped"), look.map != ColorMap::none);
-  glUniform1i(surfaces_.uniform("isGlass"), look.isGlass);
-  glUniform1f(surfaces_.uniform("low"), float(look.low));
-  glUniform1f(surfaces_.uniform("high"), float(look.high));
-  if (look.map != ColorMap::none) glUniform3fv(surfaces_.uniform("stops"), kColorStops, colorStops(look.map)[0].data());
+  program.use();
+  glUniform3fv(program.uniform("color"), 1, look.color.data());
+  glUniform1i(program.uniform("isMapped"), look.map != ColorMap::none);
+  glUniform1i(program.uniform("isGlass"), look.isGlass);
+  glUniform1f(program.uniform("low"), float(look.low));
+  glUniform1f(program.uniform("high"), float(look.high));
+  if (look.map != ColorMap::none) glUniform3fv(program.uniform("stops"), kColorStops, colorStops(look.map)[0].data());
   glBindVertexArray(item.surface->array_.id());
   if (item.surface->indices_ > 0) glDrawElements(GL_TRIANGLES, GLsizei(item.surface->indices_), GL_UNSIGNED_INT, nullptr);
   else glDrawArrays(GL_POINTS, 0, GLsizei(item.surface->points_));
@@ -111,21 +124,25 @@ void Renderer::draw(const Frame& frame, const Camera& camera, const std::vector<
 
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
-  surfaces_.use();
   const Vec3 eye = camera.eye(), toEye = normalized(eye - camera.target);
   const Vec3 key = normalized(toEye * 0.75 + camera.up() * 0.55 - camera.right() * 0.45);
-  glUniformMatrix4fv(surfaces_.uniform("matrix"), 1, GL_FALSE, camera.matrix().data());
-  glUniform3f(surfaces_.uniform("eye"), float(eye.x), float(eye.y), float(eye.z));
-  glUniform3f(surfaces_.uniform("keyLight"), float(key.x), float(key.y), float(key.z));
-  glUniform1f(surfaces_.uniform("pointSize"), pointSize);
-  const auto setClip = [&](bool isClipped) {
-    if (clip.isOn && isClipped) glUniform4f(surfaces_.uniform("clip"), float(clip.normal.x), float(clip.normal.y), float(clip.normal.z), float(clip.offset));
-    else glUniform4f(surfaces_.uniform("clip"), 0, 0, 0, 1);
+  for (const Program* program : {&plain_, &cut_}) {
+    if (program == &cut_ && !clip.isOn) continue;
+    program->use();
+    glUniformMatrix4fv(program->uniform("matrix"), 1, GL_FALSE, camera.matrix().data());
+    glUniform3f(program->uniform("eye"), float(eye.x), float(eye.y), float(eye.z));
+    glUniform3f(program->uniform("keyLight"), float(key.x), float(key.y), float(key.z));
+    glUniform1f(program->uniform("pointSize"), pointSize);
+    if (program == &cut_) glUniform4f(program->uniform("clip"), float(clip.normal.x), float(clip.normal.y), float(clip.normal.z), float(clip.offset));
+  }
+  const auto drawOne = [&](const Item& item) {
+    const bool isCut = clip.isOn && item.look.isClipped;
+    isCut ? glEnable(GL_CLIP_DISTANCE0) : glDisable(GL_CLIP_DISTANCE0);
+    drawItem(isCut ? cut_ : plain_, item);
   };
   for (const Item& item : items) {
     if (item.look.isGlass || item.surface->isEmpty()) continue;
-    setClip(item.look.isClipped);
-    drawItem(item);
+    drawOne(item);
   }
   // Glass: what is behind first, and nothing hides what is seen through it.
   glEnable(GL_BLEND);
@@ -134,16 +151,16 @@ void Renderer::draw(const Frame& frame, const Camera& camera, const std::vector<
   glEnable(GL_CULL_FACE);
   for (const Item& item : items) {
     if (!item.look.isGlass || item.surface->isEmpty()) continue;
-    setClip(item.look.isClipped);
     glCullFace(GL_FRONT);
-    drawItem(item);
+    drawOne(item);
     glCullFace(GL_BACK);
-    drawItem(item);
+    drawOne(item);
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CLIP_DISTANCE0);
   glBindVertexArray(0);
   frame.resolve();
 }

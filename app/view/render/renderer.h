@@ -16,10 +16,12 @@ struct Look {
   bool isClipped = true;            ///< whether the clipping plane cuts it
 };
 
-/// A surface in the memory of the GPU. Points and values may be replaced often.
+/// A surface in the memory of the GPU.
 class GpuSurface {
  public:
   void upload(const Surface& surface);
+  /// The same triangles over other points, normals and values.
+  void uploadPoints(const Surface& surface);
   bool isEmpty() const { return points_ == 0; }
   std::size_t triangles() const { return indices_ / 3; }
 
@@ -48,8 +50,8 @@ class Renderer {
   void draw(const Frame& frame, const Camera& camera, const std::vector<Item>& items, const ClipPlane& clip, float pointSize) const;
 
  private:
-  void drawItem(const Item& item) const;
-  Program surfaces_;
+  void drawItem(const Program& program, const Item& item) const;
+  Program plain_, cut_;
 };
 
 }  // namespace pectora::view

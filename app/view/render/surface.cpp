@@ -109,15 +109,15 @@ Surface loft(const std::vector<std::vector<Vec3>>& contours) {
   return s;
 }
 
-Surface sweptBar(std::span<const Vec3> line, double width, double height) {
+Surface sweptBar(std::span<const Vec3> line, Vec3 up, double width, double height) {
   Surface s;
   if (line.size() < 2) return s;
   // Four faces, each with points of its own so that the edges stay sharp.
   for (int face = 0; face < 4; ++face) {
     const int base = int(s.points.size());
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const Vec3 out = normalized(cross(tangent(line, i), Vec3{0, 0, 1})) * (height / 2), up{0, 0, width / 2};
-      const Vec3 corners[4] = {out + up, out - up, -out - up, -out + up};
+      const Vec3 out = normalized(cross(tangent(line, i), up)) * (height / 2), across = up * (width / 2);
+      const Vec3 corners[4] = {out + across, out - across, -out - across, -out + across};
       s.points.push_back(line[i] + corners[face]);
       s.points.push_back(line[i] + corners[(face + 1) % 4]);
     }

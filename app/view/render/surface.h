@@ -26,8 +26,8 @@ struct Surface {
 Surface tube(std::span<const Vec3> line, double radius, int sides = 10);
 /// The skin over closed contours, one above the other, closed at both ends.
 Surface loft(const std::vector<std::vector<Vec3>>& contours);
-/// The bar: a rectangle of `width` (along z) by `height`, swept along its centre line.
-Surface sweptBar(std::span<const Vec3> line, double width, double height);
+/// A bar: a rectangle of `width` (along the unit vector `up`) by `height`, swept along its centre line.
+Surface sweptBar(std::span<const Vec3> line, Vec3 up, double width, double height);
 Surface ball(Vec3 center, double radius);
 
 struct Hit {

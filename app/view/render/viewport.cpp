@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace pectora::view {
+namespace {
+
+constexpr float kPointSize = 4;   // of a cloud's points, units of the layout: scans are dense enough to close
+
+}  // namespace
 
 ViewportInput Viewport::item(const char* id, ImVec2 size, bool isLocked) {
   size = {std::max(16.f, std::floor(size.x)), std::max(16.f, std::floor(size.y))};
@@ -32,7 +37,7 @@ void Viewport::draw(const Renderer& renderer, const std::vector<Item>& items, co
   const bool isNew = version != drawnVersion_ || matrix != drawnMatrix_ || size_.x != drawnSize_.x || size_.y != drawnSize_.y;
   if (isNew || isCoarse_) {
     frame_.resize(int(size_.x), int(size_.y), isNew ? 1 : 4);
-    renderer.draw(frame_, camera, items, clip, 3.2f * scale);
+    renderer.draw(frame_, camera, items, clip, kPointSize * scale);
     drawnVersion_ = version, drawnMatrix_ = matrix, drawnSize_ = size_;
     isCoarse_ = isNew;
   }

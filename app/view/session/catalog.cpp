@@ -25,6 +25,14 @@ const std::vector<Parameter>& Catalog::parameters(const std::string& id) {
   return known_[id] = std::move(found);
 }
 
+double Catalog::number(const std::string& id, const Settings& settings, const std::string& name) {
+  for (const auto& [known, value] : settings)
+    if (known == name) return std::get<double>(value);
+  for (const Parameter& p : parameters(id))
+    if (p.name == name) return std::get<double>(p.value);
+  return 0;
+}
+
 bool Catalog::takes(const std::string& id, const std::string& input) {
   try {
     const std::vector<Port>& ports = runner_.ports(id);

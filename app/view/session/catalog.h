@@ -14,6 +14,8 @@ class Catalog {
   std::vector<std::string> ids(const std::string& stage) const;
   /// Every parameter with its default; read once. None if the plugin cannot be opened.
   const std::vector<Parameter>& parameters(const std::string& id);
+  /// The value of a number among a plugin's settings, or its default; 0 if it has no such parameter.
+  double number(const std::string& id, const Settings& settings, const std::string& name);
   /// Whether it has an input of that name. False if the plugin cannot be opened.
   bool takes(const std::string& id, const std::string& input);
   /// The one-line summary.

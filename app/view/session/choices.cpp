@@ -15,6 +15,7 @@ bool same(const Landmarks& a, const Landmarks& b) {
 Step firstDifference(const Choices& a, const Choices& b) {
   if (a.source != b.source || a.loader != b.loader) return Step::source;
   if (a.segmenter != b.segmenter) return Step::anatomy;
+  if (a.corrections != b.corrections) return Step::corrections;
   if (a.splines != b.splines) return Step::cage;
   if (a.model != b.model || a.effects != b.effects) return Step::scene;
   if (a.planner != b.planner) return Step::plan;
@@ -31,9 +32,9 @@ Choices initialChoices(const std::vector<std::string>& solvers) {
   for (const char* id : {"solver.newton", "solver.lbfgs"})
     if (c.solver.id.empty() && std::find(solvers.begin(), solvers.end(), id) != solvers.end()) c.solver.id = id;
   if (c.solver.id.empty() && !solvers.empty()) c.solver.id = solvers.front();
-  // Slack skin gives way, as in scripts/correction.lua.
+  // The effects of scripts/correction.lua, where slack skin gives way.
   const Settings skin{{"compression", 0.02}};
-  c.effects = {{{"effect.stretch", skin}}, {{"effect.shear", skin}}, {{"effect.bend", skin}}, {{"effect.direct"}}, {{"effect.cross"}}, {{"effect.attachment"}}};
+  c.effects = {{{"effect.stretch", skin}}, {{"effect.shear", skin}}, {{"effect.bend", skin}}, {{"effect.direct"}}, {{"effect.cross"}}, {{"effect.attachment"}}, {{"effect.rib_contact"}}};
   return c;
 }
 

@@ -29,6 +29,7 @@ struct Choices {
   Source source = Source::none;
   PluginChoice loader;          ///< of the source: its path, or the phantom's settings
   PluginChoice segmenter{"segmenter.thorax"}, splines{"splines.cartilage"}, model{"model.two_layer"}, planner{"planner.nuss"}, solver;
+  std::vector<PluginChoice> corrections;      ///< of the anatomy by hand, in order
   std::vector<EffectChoice> effects;
   std::string scanPath;                       ///< a scan after the operation; empty: the phantom's own, or none
   Landmarks ctLandmarks, scanLandmarks;       ///< placed by hand; none: the phantom's own
@@ -37,7 +38,7 @@ struct Choices {
 };
 
 /// The steps from a file to a comparison, in the order in which they depend on each other.
-enum class Step { source, anatomy, cage, scene, plan, motion, scan, registration, comparison, nothing };
+enum class Step { source, anatomy, corrections, cage, scene, plan, motion, scan, registration, comparison, nothing };
 /// The first step whose result differs between two sets of choices.
 Step firstDifference(const Choices& a, const Choices& b);
 

@@ -1,6 +1,7 @@
 // From choices to results, step by step, on the thread that calls it.
 #pragma once
 
+#include "app/view/session/effect_worth.h"
 #include "app/view/session/live.h"
 #include "app/view/session/results.h"
 #include "app/view/session/script_calls.h"
@@ -40,22 +41,18 @@ class Pipeline {
   void exportTo(const std::string& folder);
   /// A line of the console, which sees the results as ct, anatomy, cage, scene, plan, motion, comparison.
   void evaluate(const std::string& code);
-  /// The choices that a Lua file makes: a script's whole way, which is run up to its first prediction and comparison and writes
-  /// nothing, or a preset's tuning of the present ones. A script's parameter "ct" is given the present patient. Throws Error.
+  /// As in opened_script.h.
   Choices openedScript(const Choices& present, const std::string& path);
   /// Called by the runner before each call.
   void starting(const std::string& id, const Settings& settings, const Runner::PortInputs& inputs);
 
  private:
-  Choices withPreset(Choices choices, const ScriptEngine& engine, const std::string& path);
-  void runStep(Step step);
+  void runOne(Step step);
   void runFrom(Step first, Step last);
-  void openResult();
   void solveLive();
   void solveFromRest();
   /// The warm solve of the present scene. Throws Error.
   WarmSolve& warm();
-  std::vector<Handle> run(const PluginChoice& plugin, const Runner::PortInputs& inputs);
   void show();
 
   Registry& registry_;

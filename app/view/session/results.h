@@ -15,7 +15,8 @@
 namespace pectora::view {
 
 struct Results {
-  Handle ct, anatomy, cage, scene, plan, motion;
+  Handle ct, segmented, cage, scene, plan, motion;
+  Handle anatomy;                  ///< what was segmented, corrected
   Handle before, after, barMesh;   ///< of a result folder
   Handle phantomScan, phantomCtLandmarks, phantomScanLandmarks;
   Handle scan, aligned, byLandmarks, byIcp, comparison;
@@ -36,14 +37,6 @@ struct Results {
   const Plan* planValue() const { return as<Plan>(plan); }
   const Motion* motionValue() const { return as<Motion>(motion); }
   const Comparison* comparisonValue() const { return as<Comparison>(comparison); }
-};
-
-/// What leaving out one effect changes.
-struct EffectWorth {
-  std::string id;
-  bool isNeeded = false;      ///< without it points are held by nothing
-  double largest = 0, rms = 0;   ///< change of the skin without it, mm
-  double milliseconds = 0;    ///< of one evaluation of all forces that it costs
 };
 
 /// A spring at a picked point.

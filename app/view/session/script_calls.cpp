@@ -27,7 +27,8 @@ void ScriptCalls::starting(const std::string& id, const Settings& settings, cons
   if (stage == "report" || (stage == "solver" && hasSolve_)) throw Cancelled();
   const PluginChoice call{id, sorted(settings)};
   if (stage == "loader") choices_.loader = call, choices_.source = id == "loader.phantom" ? Source::phantom : Source::dicom;
-  else if (stage == "segmenter") choices_.segmenter = call;
+  else if (stage == "segmenter") choices_.segmenter = call, choices_.corrections.clear();
+  else if (stage == "correct") choices_.corrections.push_back(call);
   else if (stage == "splines") choices_.splines = call;
   else if (stage == "planner") choices_.planner = call, hasPlan_ = true;
   else if (stage == "solver") choices_.solver = call, hasSolve_ = true;

@@ -85,6 +85,7 @@ std::string scriptOf(const Choices& c) {
   }
   text += fmt::format("local ct{} = {}{}\n", hasPhantom ? ", truth, phantom_scan, ct_landmarks, scan_landmarks" : "", c.loader.id, table(c.loader.settings));
   text += fmt::format("local anatomy = {}(ct{})\n", c.segmenter.id, lastArgument(c.segmenter.settings));
+  for (const PluginChoice& correction : c.corrections) text += fmt::format("anatomy = {}(anatomy{})\n", correction.id, lastArgument(correction.settings));
   text += fmt::format("local cage = {}(anatomy, ct{})\n\n", c.splines.id, lastArgument(c.splines.settings));
   // A lattice is made of the cage alone, a solid of the CT, too.
   text += fmt::format("local scene = {}(cage, {}{{\n", c.model.id, c.model.id == "model.two_layer" ? "" : "ct, ");

@@ -76,7 +76,10 @@ std::string ribsThereAre(const Anatomy& anatomy) {
 
 Anatomy dropRib(const Anatomy& anatomy, const RibChoice& rib) {
   Anatomy changed = anatomy;
-  changed.ribs.erase(changed.ribs.begin() + std::ptrdiff_t(find(anatomy, rib)));
+  const auto dropped = changed.ribs.begin() + std::ptrdiff_t(find(anatomy, rib));
+  // Its outlines in the slices, too; those of ribs without a number cannot be told from each other.
+  std::erase_if(changed.contours, [&](const SliceContour& c) { return c.structure == "rib" && c.side == dropped->side && c.number == dropped->number && c.number > 0; });
+  changed.ribs.erase(dropped);
   return changed;
 }
 

@@ -19,7 +19,7 @@ Side sideOf(const std::string& word);
 /// "right 1, 2, 3; left 1, 2 and one without a number": for errors.
 std::string ribsThereAre(const Anatomy& anatomy);
 
-/// Takes the rib out. Throws Error that names the ribs there are if it is not one of them.
+/// Takes the rib out, with its outlines if it has a number. Throws Error that names the ribs there are if it is not one of them.
 Anatomy dropRib(const Anatomy& anatomy, const RibChoice& rib);
 /// Gives the rib another number, 1 to 12. Throws Error as dropRib, and if that number is taken on its side.
 Anatomy renumberRib(const Anatomy& anatomy, const RibChoice& rib, int number);

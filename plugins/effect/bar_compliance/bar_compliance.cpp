@@ -1,4 +1,4 @@
-// The bar bends under the chest, so that the sternum comes less far than planned.
+// A bar bends under the chest, so that the sternum comes less far than planned.
 #include "kernel/stage/layer_effect.h"
 
 #include <fmt/format.h>
@@ -21,10 +21,14 @@ class BarCompliance final : public Effect {
       part.emptyBecause = "nothing pushes back on the bar; call effect.cartilage_bending";
       return part;
     }
-    part.steering.barStiffness = [e = youngsModulus_ * 1e3, span = span_, hinge = hinge_](const Plan& plan) {
-      const double inertia = plan.bar.width * plan.bar.height * plan.bar.height * plan.bar.height / 12;
-      const double bar = 48 * e * inertia / (span * span * span);
-      return hinge > 0 ? 1 / (1 / bar + 1 / hinge) : bar;
+    part.steering.barResistance = [e = youngsModulus_ * 1e3, span = span_, hinge = hinge_](const Plan& plan) {
+      double sum = 0;
+      for (const Bar& bar : plan.bars) {
+        const double inertia = bar.width * bar.height * bar.height * bar.height / 12;
+        const double stiffness = 48 * e * inertia / (span * span * span);
+        sum += (hinge > 0 ? 1 / (1 / stiffness + 1 / hinge) : stiffness) * bar.lift * bar.lift;
+      }
+      return sum;
     };
     part.notes = {fmt::format("E = {:.4g} GPa, {:.4g} mm between its supports", youngsModulus_, span_)};
     return part;
@@ -38,4 +42,4 @@ class BarCompliance final : public Effect {
 
 PECTORA_EFFECT(BarCompliance, {.id = "effect.bar_compliance", .version = "1.0",
                                .summary = "The bar bends under the chest: the sternum comes less far than planned",
-                               .references = "k = 48 E I / L^3 in series with the chest; 316L steel"})
+                               .references = "k = 48 E I / L^3 in series with the chest, two bars by the same part of their lifts; 316L steel"})

@@ -6,18 +6,18 @@ namespace pectora {
 
 double secondMomentOfEllipse(double height, double depth) { return std::numbers::pi / 64 * height * depth * depth * depth; }
 
-double chestStiffness(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness) {
-  if (!(plan.lift > 0) || plan.frames.empty()) return 0;
-  double stiffness = 0;
+double chestResistance(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness) {
+  if (plan.frames.empty()) return 0;
+  double sum = 0;
   for (std::size_t i = 0; i < plan.cage->cartilages.size(); ++i) {
     const Cartilage& cartilage = plan.cage->cartilages[i];
     const double length = cartilage.curve.length();
     if (!(length > 0)) continue;
-    const double way = distance(plan.frames.back()[i].curve.at(1), cartilage.curve.at(1)) / plan.lift;
+    const double way = distance(plan.frames.back()[i].curve.at(1), cartilage.curve.at(1));
     const double beam = 12 * youngsModulus * secondMoment / (length * length * length);
-    stiffness += way * way / (1 / beam + 1 / ribStiffness);
+    sum += way * way / (1 / beam + 1 / ribStiffness);
   }
-  return stiffness;
+  return sum;
 }
 
 }  // namespace pectora

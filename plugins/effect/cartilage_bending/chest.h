@@ -5,11 +5,10 @@
 
 namespace pectora {
 
-/// Stiffness of the chest against the way of the deepest point, N/mm. Each cartilage is a beam that is clamped at its rib and
-/// guided at its medial end, k = 12 E I / L^3 of its length at rest, in series with its rib; it counts with the square of its
-/// end's way over that of the deepest point. `youngsModulus` in N/mm^2, `secondMoment` I in mm^4, `ribStiffness` of a rib's front
-/// end in N/mm. 0 for a plan that lifts nothing.
-double chestStiffness(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness);
+/// What the chest does against the whole plan, N mm: the sum of k d^2. Each cartilage is a beam that is clamped at its rib and
+/// guided at its medial end, k = 12 E I / L^3 of its length at rest, in series with its rib; d is the way of that end.
+/// `youngsModulus` in N/mm^2, `secondMoment` I in mm^4, `ribStiffness` of a rib's front end in N/mm.
+double chestResistance(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness);
 
 /// I of an ellipse about the axis across `depth`, mm^4.
 double secondMomentOfEllipse(double height, double depth);

@@ -24,7 +24,7 @@ class CartilageBending final : public Effect {
       return part;
     }
     const double moment = secondMomentOfEllipse(height_, depth_);
-    part.steering.chestStiffness = [e = youngsModulus_, moment, rib = rib_](const Plan& plan) { return chestStiffness(plan, e, moment, rib); };
+    part.steering.chestResistance = [e = youngsModulus_, moment, rib = rib_](const Plan& plan) { return chestResistance(plan, e, moment, rib); };
     part.notes = {fmt::format("E I = {:.4g} N mm2, {} cartilages; the force on the bar is in the motion's bar_force", youngsModulus_ * moment, scene.cage->cartilages.size())};
     return part;
   }

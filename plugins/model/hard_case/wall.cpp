@@ -25,7 +25,7 @@ HardWall::HardWall(int rows, int columns, double spacing, double thickness, doub
   // Water's density, shared by both layers.
   scene->outerMass.assign(scene->points(), 0.5e-6 * spacing * spacing * thickness);
   scene->innerMass = scene->outerMass;
-  plan->lift = lift;
+  plan->bars = {{.lift = lift}};
   plan->motion.translation = {0, -lift, 0};
   plan->frames.assign(2, {});
 }

@@ -1,4 +1,4 @@
-// The bar's course across the chest.
+// A bar's course across the chest.
 #pragma once
 
 #include "kernel/value/plan.h"
@@ -10,8 +10,13 @@ struct BarSettings {
   double flat = 30;                    ///< length of the straight part behind the sternum, mm
 };
 
-/// The bar at the height of `deepest`: behind the lifted sternum in the middle, over the ribs' outer side to the mid-axillary lines at
-/// its ends; a smooth convex curve. `motion` is the sternum's.
-Bar shapeBar(const RibCage& cage, Vec3 deepest, const RigidMotion& motion, const BarSettings& settings);
+/// The bar that lifts `point` of the sternum's front by `lift`: behind the lifted sternum in the middle, over the ribs' outer side to
+/// the mid-axillary lines at its ends; a smooth convex curve in the plane through the lifted point whose left side rises by
+/// `tiltDeg`. `motion` is the sternum's.
+Bar shapeBar(const RibCage& cage, Vec3 point, double lift, const RigidMotion& motion, double tiltDeg, const BarSettings& settings);
+
+/// Number of the rib above the intercostal space that a bar passes on one side of the sternum: the lowest whose notch there lies
+/// above the plane through `point` with the unit normal `up`. 0 if none does.
+int intercostalSpace(const Sternum& sternum, Side side, Vec3 point, Vec3 up);
 
 }  // namespace pectora

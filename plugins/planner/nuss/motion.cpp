@@ -10,11 +10,14 @@
 
 namespace pectora {
 
-RigidMotion liftRotation(const Sternum& sternum, Vec3 deepest, double lift, Pivot pivot, double pivotDistance) {
+Vec3 pivotPoint(const Sternum& sternum, Vec3 lifted, Pivot pivot, double pivotDistance) {
+  if (pivot == Pivot::manubrium) return sternum.manubriosternalJoint;
+  return {lifted.x, sternum.manubriosternalJoint.y, lifted.z + pivotDistance};
+}
+
+RigidMotion liftRotation(Vec3 deepest, double lift, Vec3 pivot) {
   RigidMotion motion;
-  motion.pivot = pivot == Pivot::manubrium
-                     ? sternum.manubriosternalJoint
-                     : Vec3{deepest.x, sternum.manubriosternalJoint.y, deepest.z + pivotDistance};
+  motion.pivot = pivot;
   // About +x, the point r = (y, z) from the axis goes to y cos a - z sin a: forward (y falls) for the negative z below
   // the axis needs a negative angle. The rise a -> y - y(a) grows up to where r points straight forward.
   const double ry = deepest.y - motion.pivot.y, rz = deepest.z - motion.pivot.z;
@@ -32,6 +35,26 @@ RigidMotion liftRotation(const Sternum& sternum, Vec3 deepest, double lift, Pivo
   }
   motion.axis = {1, 0, 0};
   motion.angle = lift == 0 ? 0 : 0.5 * (low + high);
+  return motion;
+}
+
+RigidMotion liftBoth(const LiftedPoint& first, const LiftedPoint& second, Vec3 axis, double leastDistance) {
+  const Vec3 a = first.point - axis, b = second.point - axis;
+  if (std::abs(a.z - b.z) < leastDistance)
+    throw Error("the two bars lie on each other")
+        .of("second_level").given(fmt::format("{:.1f} mm from the first bar", std::abs(a.z - b.z))).allowed(fmt::format("{:.1f} mm or more, the bar's width", leastDistance))
+        .advise("Bring the bars further apart, or set second_level to 0 for one bar");
+  // Turned by t about x, the depth between the points is dy cos t - dz sin t = R cos(t + phi), which must lose first.lift - second.lift.
+  const double dy = a.y - b.y, dz = a.z - b.z, length = std::hypot(dy, dz), phi = std::atan2(dz, dy);
+  const double wanted = (dy - (first.lift - second.lift)) / length;
+  RigidMotion motion;
+  motion.pivot = axis;
+  motion.angle = std::abs(wanted) <= 1 ? std::copysign(std::acos(wanted), phi) - phi : INFINITY;
+  if (!(std::abs(motion.angle) <= std::numbers::pi / 3))
+    throw Error("no rotation of the sternum below 60 degrees brings both points to their lifts")
+        .of("second_lift").given(fmt::format("{:.1f} mm beside {:.1f} mm, {:.0f} mm apart", second.lift, first.lift, std::abs(dz)))
+        .advise("Bring the two lifts closer to each other, or the bars further apart");
+  motion.translation.y = -first.lift - (motion(first.point).y - first.point.y);
   return motion;
 }
 
@@ -64,14 +87,6 @@ std::vector<std::vector<MovedCartilage>> motionFrames(const RibCage& cage, const
   std::vector<std::vector<MovedCartilage>> frames;
   for (int f = 0; f < count; ++f) frames.push_back(followSternum(cage, motion.part(double(f) / (count - 1))));
   return frames;
-}
-
-int intercostalSpace(const RibCage& cage, double z) {
-  // The lowest rib whose cartilage joins the sternum above z.
-  int space = 0;
-  for (const Notch& notch : cage.anatomy->sternum.notches)
-    if (notch.position.z >= z) space = std::max(space, notch.rib);
-  return space;
 }
 
 }  // namespace pectora

@@ -100,25 +100,26 @@ std::string plyBytes(const Points& points, const FileNote& note) {
 std::string vtpBytes(const Mesh& mesh, const FileNote& note) { return vtp(mesh.points, &mesh.triangles, mesh.fields, note); }
 std::string vtpBytes(const Points& points, const FileNote& note) { return vtp(points.points, nullptr, points.fields, note); }
 
-Mesh barMesh(const std::vector<Vec3>& line, double width, double height) {
+Mesh barMesh(const std::vector<Bar>& bars) {
   Mesh mesh;
-  const int count = int(line.size());
-  for (int i = 0; i < count; ++i) {
-    const Vec3 along = normalized(line[std::min(i + 1, count - 1)] - line[std::max(i - 1, 0)]);
-    const Vec3 up{0, 0, width / 2};
-    const Vec3 out = normalized(cross(along, Vec3{0, 0, 1})) * (height / 2);
-    for (const Vec3& corner : {up + out, up - out, -up - out, -up + out}) mesh.points.push_back(line[i] + corner);
-  }
-  for (int i = 0; i + 1 < count; ++i) {
-    for (int k = 0; k < 4; ++k) {
-      const int a = 4 * i + k, b = 4 * i + (k + 1) % 4;
-      mesh.triangles.push_back({a, b + 4, b});
-      mesh.triangles.push_back({a, a + 4, b + 4});
+  for (const Bar& bar : bars) {
+    const std::vector<Vec3>& line = bar.centerline;
+    const int count = int(line.size()), base = int(mesh.points.size());
+    for (int i = 0; i < count; ++i) {
+      const Vec3 along = normalized(line[std::min(i + 1, count - 1)] - line[std::max(i - 1, 0)]);
+      const Vec3 up = bar.up * (bar.width / 2), out = normalized(cross(along, bar.up)) * (bar.height / 2);
+      for (const Vec3& corner : {up + out, up - out, -up - out, -up + out}) mesh.points.push_back(line[i] + corner);
     }
-  }
-  if (count > 1) {
-    const int last = 4 * (count - 1);
-    mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 3}, {0, 1, 2}, {last, last + 2, last + 1}, {last, last + 3, last + 2}});
+    for (int i = 0; i + 1 < count; ++i) {
+      for (int k = 0; k < 4; ++k) {
+        const int a = base + 4 * i + k, b = base + 4 * i + (k + 1) % 4;
+        mesh.triangles.push_back({a, b + 4, b});
+        mesh.triangles.push_back({a, a + 4, b + 4});
+      }
+    }
+    if (count < 2) continue;
+    const int last = base + 4 * (count - 1);
+    mesh.triangles.insert(mesh.triangles.end(), {{base, base + 2, base + 3}, {base, base + 1, base + 2}, {last, last + 2, last + 1}, {last, last + 3, last + 2}});
   }
   return mesh;
 }

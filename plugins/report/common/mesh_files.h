@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/value/mesh.h"
+#include "kernel/value/plan.h"
 
 #include <string>
 
@@ -19,7 +20,7 @@ std::string plyBytes(const Points& points, const FileNote& note);
 std::string vtpBytes(const Mesh& mesh, const FileNote& note);
 std::string vtpBytes(const Points& points, const FileNote& note);
 
-/// A tube of rectangular section along a line, such as the bar: `width` along z, `height` across.
-Mesh barMesh(const std::vector<Vec3>& centerline, double width, double height);
+/// Bars as one mesh: tubes of rectangular section, each closed.
+Mesh barMesh(const std::vector<Bar>& bars);
 
 }  // namespace pectora

@@ -24,7 +24,8 @@ void drawView(Canvas& canvas, SolidView view, Seen from, const RibCage& cage, co
     for (auto& outline : outlines)
       for (Vec3& p : outline) p = plan->motion(p);
   view.draw(stackMesh(outlines), kSternum);
-  if (plan) view.draw(tubeMesh(plan->bar.centerline, plan->bar.width / 2, std::max(2.0, plan->bar.height / 2), middle), kBar);
+  if (plan)
+    for (const Bar& bar : plan->bars) view.draw(tubeMesh(bar.centerline, bar.width / 2, std::max(2.0, bar.height / 2), middle), kBar);
   view.paint(canvas);
 
   // Where that was before, as lines; the ribs' numbers.

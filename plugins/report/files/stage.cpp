@@ -90,7 +90,7 @@ class Files final : public Stage {
       surfacePicture(after, "", 0, "Predicted", {}).write(file("after.png"));
     }
     if (const auto plan = inputs.get<Plan>("plan"))
-      writeFile(file("bar.ply"), plyBytes(barMesh(plan->bar.centerline, plan->bar.width, plan->bar.height), note(inputs, "plan")));
+      writeFile(file("bar.ply"), plyBytes(barMesh(plan->bars), note(inputs, "plan")));
   }
 
   void writeComparisons(const Inputs& inputs) {

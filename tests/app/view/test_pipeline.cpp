@@ -47,7 +47,7 @@ TEST(Pipeline, GoesAllTheWayToAComparisonWithThePhantomsScan) {
   EXPECT_EQ(r->motionValue()->status, SolveStatus::converged);
   ASSERT_TRUE(r->comparisonValue());
   EXPECT_GT(r->comparisonValue()->overlap.count, 1000u);
-  EXPECT_EQ(r->effects.size(), 6u);
+  EXPECT_EQ(r->effects.size(), 7u);
 }
 
 TEST(Pipeline, LiveSkinEndsAsTheScriptsDoes) {
@@ -126,7 +126,7 @@ TEST(Pipeline, MeasuresWhatEachEffectChanges) {
   std::vector<EffectWorth> worths;
   s.worker.run("effects", [&](Pipeline& pipeline) { worths = pipeline.measureEffects([](double, const std::string&) {}); });
   s.wait();
-  ASSERT_EQ(worths.size(), 6u);
+  ASSERT_EQ(worths.size(), 7u);
   const auto of = [&](const std::string& id) { return *std::find_if(worths.begin(), worths.end(), [&](const EffectWorth& w) { return w.id == id; }); };
   EXPECT_GT(of("effect.cross").largest, of("effect.bend").largest);
   for (const EffectWorth& w : worths) EXPECT_LE(w.rms, w.largest) << w.id;

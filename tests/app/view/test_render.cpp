@@ -1,4 +1,5 @@
-// Cameras, shapes and picking: geometry alone.
+// Cameras, shapes and picking, and what the renderer makes of them on a framebuffer.
+#include "app/view/app.h"
 #include "app/view/render/color_map.h"
 #include "app/view/render/surface.h"
 
@@ -67,7 +68,7 @@ TEST(Surface, TubesBarsAndBallsAreClosedAndFaceOutwards) {
   EXPECT_NEAR(volumeOf(ball({3, 4, 5}, 10)) / sphere, 0.94, 0.03);   // 10 x 16 facets within the sphere
   // The bar has no ends: four faces of its section's sides.
   double area = 0;
-  const Surface bar = sweptBar(line, 12, 3);
+  const Surface bar = sweptBar(line, {0, 0, 1}, 12, 3);
   for (const auto& t : bar.triangles) area += norm(cross(bar.points[t[1]] - bar.points[t[0]], bar.points[t[2]] - bar.points[t[0]])) / 2;
   EXPECT_NEAR(area, 100 * 2 * (12 + 3), 1e-6);
 }
@@ -77,6 +78,35 @@ TEST(Surface, LoftOverEqualSquaresIsAColumn) {
   for (int z = 0; z <= 40; z += 10) squares.push_back({{-10, -10, double(z)}, {10, -10, double(z)}, {10, 10, double(z)}, {-10, 10, double(z)}});
   // 40 directions cut the corners a little.
   EXPECT_NEAR(std::abs(volumeOf(loft(squares))), 20 * 20 * 40, 0.02 * 20 * 20 * 40);
+}
+
+TEST(Renderer, CutsWhatLiesBeforeThePlaneAndOnlyWhereThatIsAskedFor) {
+  const ImGuiHolder imgui;
+  const auto target = makeOffscreen(200, 200, 1);
+  const Renderer renderer;
+  GpuSurface gpu;
+  gpu.upload(ball({0, 0, 0}, 50));
+  Frame frame;
+  frame.resize(200, 200, 1);
+  Camera camera;
+  camera.frame({}, 60);
+  // Pixels that are red on the patient's right and left: the ball is, the background is not.
+  const auto reds = [&](const ClipPlane& clip, bool isClipped) {
+    renderer.draw(frame, camera, {{&gpu, {.color = {1, 0, 0}, .isClipped = isClipped}}}, clip, 1);
+    const std::vector<unsigned char> rgba = readPixels(frame.framebuffer(), 200, 200);
+    std::pair<int, int> count{0, 0};
+    for (int i = 0; i < 200 * 200; ++i)
+      if (rgba[4 * i] > rgba[4 * i + 2] + 20) ++(i % 200 < 100 ? count.first : count.second);
+    return count;
+  };
+  const auto whole = reds({}, true);
+  EXPECT_GT(whole.first, 5000);
+  EXPECT_NEAR(whole.first, whole.second, 100);
+  const ClipPlane middle{true, {1, 0, 0}, 0};
+  EXPECT_NEAR(reds(middle, true).first, whole.first, 200) << "its inside is seen at the cut";
+  EXPECT_EQ(reds(middle, true).second, 0);
+  EXPECT_EQ(reds(middle, false), whole);
+  EXPECT_EQ(openGlErrors(), 0);
 }
 
 TEST(Pick, FindsTheFirstSurfaceAndItsNearestPoint) {

@@ -41,17 +41,17 @@ TEST(Window, PicksAPointAndTellsItsSprings) {
   Registry registry({PECTORA_PLUGINS});
   App app(*target, registry, [] {});
   Hand hand(app);
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(500));
   app.context().choices.loader = {"loader.phantom", {{"matrix", 128.0}, {"slice_spacing", 5.0}}};
   assign(app.context().choices.model.settings, "spacing", 14.0);
   hand.click("opening.phantom");
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(500));
   hand.click("tab.tissue");
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(500));
   const Scene& scene = *app.context().results->sceneValue();
   const Vec3 at = app.camera().project((*app.context().results->skin)[scene.index(scene.rows / 2, scene.columns / 2)]);
   hand.click("scene", float(at.x), float(at.y));
-  ASSERT_TRUE(hand.rest());
+  ASSERT_TRUE(hand.rest(500));
   ASSERT_TRUE(app.context().picked);
   EXPECT_FALSE(app.context().picked->springs.empty());
 }

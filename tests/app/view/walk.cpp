@@ -53,7 +53,7 @@ Walk walkThrough(App& app, Hand& hand, const Target& target, const std::string& 
   Walk walk;
   std::tie(walk.width, walk.height) = target.size();
   Context& context = app.context();
-  const auto rested = [&] { EXPECT_TRUE(hand.rest()) << context.activity.stage << " " << context.activity.what; };
+  const auto rested = [&] { EXPECT_TRUE(hand.rest(500)) << context.activity.stage << " " << context.activity.what; };
   const auto skin = [&] { return context.results->motionValue() ? context.results->motionValue()->outer : std::vector<Vec3>{}; };
   rested();
   walk.empty = target.pixels();
@@ -74,13 +74,13 @@ Walk walkThrough(App& app, Hand& hand, const Target& target, const std::string& 
   rested();
   const auto first = skin();
   const Plan* plan = context.results->planValue();
-  const Vec3 middle = plan->bar.centerline[plan->bar.centerline.size() / 2], at = app.camera().project(middle);
-  const double liftBefore = plan->lift;
+  const Vec3 middle = plan->bars[0].centerline[plan->bars[0].centerline.size() / 2], at = app.camera().project(middle);
+  const double liftBefore = plan->lift();
   hand.drag("scene", {float(at.x), float(at.y)}, {float(at.x) + 0.03f, float(at.y) - 0.02f});
   EXPECT_TRUE(context.results->isLive || context.activity.isBusy) << "the skin follows at once";
   rested();
   plan = context.results->planValue();
-  walk.lift = plan->lift, walk.level = std::get<double>(*find(context.choices.planner.settings, "level"));
+  walk.lift = plan->lift(), walk.level = std::get<double>(*find(context.choices.planner.settings, "level"));
   EXPECT_LT(walk.lift, liftBefore) << "away from the eye is back";
   EXPECT_GT(walk.level, 0) << "up is up";
   EXPECT_FALSE(context.results->isLive) << "what has settled is the script's";
@@ -88,7 +88,7 @@ Walk walkThrough(App& app, Hand& hand, const Target& target, const std::string& 
   walk.lifted = target.pixels();
   hand.control('z');
   rested();
-  EXPECT_EQ(context.results->planValue()->lift, liftBefore);
+  EXPECT_EQ(context.results->planValue()->lift(), liftBefore);
   EXPECT_EQ(largestDistance(skin(), first), 0) << "settled skins do not depend on what came before";
 
   // A stiffness by its slider; undo, redo and undo.

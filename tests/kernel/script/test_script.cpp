@@ -142,6 +142,13 @@ TEST(Script, RequiresModulesBesideItAndNoOthers) {
   EXPECT_THROW(s.run("require('nowhere')"), Error);
 }
 
+TEST(ScriptParameters, OfAScriptThatDeclaresNoneAreNoneAndNothingIsRun) {
+  Script s;
+  const std::string path = Script::write("print('before')\nlocal v = loader.counter{}\nprint('ran on')");
+  EXPECT_TRUE(s.engine.parametersOf(path).empty());
+  EXPECT_EQ(s.printed, "before\n");
+}
+
 TEST(ScriptParameters, AreListedWithoutRunningTheRest) {
   Script s;
   const std::string path = Script::write(

@@ -38,7 +38,7 @@ struct Wall {
     scene->effects = {call("effect.stretch", {{"youngs_modulus", 200 * stiffnessScale}}), call("effect.shear", {{"youngs_modulus", 200 * stiffnessScale}}),
                       call("effect.bend", {{"youngs_modulus", 200 * stiffnessScale}}), call("effect.direct", {{"youngs_modulus", 10 * stiffnessScale}}),
                       call("effect.cross", {{"youngs_modulus", 10 * stiffnessScale}}), call("effect.attachment", {{"youngs_modulus", 60 * stiffnessScale}})};
-    plan->lift = lift;
+    plan->bars = {{.lift = lift}};
     plan->motion.translation = {0, -lift, 0};
     plan->frames.assign(2, {});
   }
@@ -54,7 +54,7 @@ struct Solve {
   explicit Solve(std::string solver) : id(std::move(solver)) {}
   std::shared_ptr<const Motion> operator()(const Wall& wall, Settings settings, std::shared_ptr<const Motion> start = nullptr) {
     const auto record = std::make_shared<Record>();
-    record->key = std::to_string(wall.plan->lift) + std::to_string(std::uintptr_t(wall.scene.get())) + std::to_string(std::uintptr_t(start.get()));
+    record->key = std::to_string(wall.plan->lift()) + std::to_string(std::uintptr_t(wall.scene.get())) + std::to_string(std::uintptr_t(start.get()));
     std::vector<Handle> starts;
     if (start) starts.push_back({start, record});
     return std::dynamic_pointer_cast<const Motion>(runner.run(id, settings, {{{wall.scene, record}}, {{wall.plan, record}}, starts})[0].value);

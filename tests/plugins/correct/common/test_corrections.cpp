@@ -52,6 +52,15 @@ TEST(DropRib, TakesOutTheRibThatIsNamed) {
   EXPECT_NE(changed.rib(Side::right, 5), nullptr);
 }
 
+TEST(DropRib, TakesItsOutlinesOutOfTheSlicesAndNoOthers) {
+  Anatomy anatomy = simple();
+  const std::size_t others = anatomy.contours.size() + 2;
+  for (const auto& [side, number] : {std::pair{Side::left, 5}, {Side::right, 5}, {Side::left, 0}}) anatomy.contours.push_back({0, "rib", number, side, {{0, 0, 0}}, true});
+  const Anatomy changed = dropRib(anatomy, {Side::left, 5, {}});
+  EXPECT_EQ(changed.contours.size(), others);
+  for (const SliceContour& c : changed.contours) EXPECT_FALSE(c.structure == "rib" && c.side == Side::left && c.number == 5);
+}
+
 TEST(DropRib, FindsARibWithoutANumberByAPointNearToIt) {
   const Anatomy changed = dropRib(simple(), {Side::left, 0, Vec3{60, 3, -195}});
   EXPECT_EQ(changed.ribs.size(), 4u);

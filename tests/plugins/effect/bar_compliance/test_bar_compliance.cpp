@@ -39,6 +39,19 @@ TEST(BarCompliance, SharesTheLiftWithTheChestAsSpringsInSeries) {
   EXPECT_LT(largestDifference(Solve("solver.newton")(less, {{"tolerance", 1e-8}})->outer, Solve("solver.newton")(wall, {{"tolerance", 1e-8}})->outer), 1e-3);
 }
 
+TEST(BarCompliance, SharesTheWayOfTwoBarsByTheirEnergies) {
+  // Two equal bars at the ends of one plan: the chest's resistance against b (L1^2 + L2^2).
+  Wall wall = heldWall(20);
+  wall.scene->effects.push_back(call("effect.cartilage_bending"));
+  const double chest = Solve("solver.newton")(wall, {})->barForce / 20;
+  wall.plan->bars.push_back({.lift = 10});
+  wall.scene->effects.push_back(call("effect.bar_compliance"));
+  const auto motion = Solve("solver.newton")(wall, {});
+  const double bar = 48 * 193e3 * 12.7 * 3.5 * 3.5 * 3.5 / 12 / (220. * 220 * 220), part = bar * 500 / (bar * 500 + chest * 400);
+  EXPECT_NEAR(motion->lift, 20 * part, 1e-9);
+  EXPECT_NEAR(motion->barForce, bar * (1 - part) * (20 + 10), 1e-9);
+}
+
 TEST(BarCompliance, DropsOutWhereNothingPushesBack) {
   Registry registry({PECTORA_PLUGINS});
   Wall wall = heldWall(20);

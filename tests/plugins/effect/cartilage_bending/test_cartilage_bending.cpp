@@ -40,15 +40,15 @@ TEST(CartilageBending, OfAnEllipseHasTheKnownSecondMoment) { EXPECT_NEAR(kMoment
 
 TEST(CartilageBending, CountsGuidedBeamsInSeriesWithTheirRibs) {
   const double beam = 12 * 25 * kMoment / (60. * 60 * 60);
-  EXPECT_NEAR(chestStiffness(*chest(20).plan, 25, kMoment, 1e12), 4 * 0.25 * beam, 1e-9);
-  EXPECT_NEAR(chestStiffness(*chest(20).plan, 25, kMoment, 2), 4 * 0.25 / (1 / beam + 1 / 2.0), 1e-9);
-  EXPECT_EQ(chestStiffness(*chest(0).plan, 25, kMoment, 2), 0);
+  EXPECT_NEAR(chestResistance(*chest(20).plan, 25, kMoment, 1e12), 4 * 10 * 10 * beam, 1e-9);
+  EXPECT_NEAR(chestResistance(*chest(20).plan, 25, kMoment, 2), 4 * 10 * 10 / (1 / beam + 1 / 2.0), 1e-9);
+  EXPECT_EQ(chestResistance(*chest(0).plan, 25, kMoment, 2), 0);
 }
 
 TEST(CartilageBending, TellsTheForceOnTheBar) {
   Wall wall = chest(20);
   wall.scene->effects.push_back(call("effect.cartilage_bending"));
   const auto motion = Solve("solver.newton")(wall, {});
-  EXPECT_NEAR(motion->barForce, 20 * chestStiffness(*wall.plan, 25, kMoment, 5), 1e-9);
+  EXPECT_NEAR(motion->barForce, chestResistance(*wall.plan, 25, kMoment, 5) / 20, 1e-9);
   EXPECT_EQ(motion->lift, 20);
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 using namespace pectora;
 
@@ -65,7 +66,7 @@ TEST(LiftRotation, BringsTheDeepestPointForwardByTheLift) {
   const Sternum s = plateSternum();
   for (const Pivot pivot : {Pivot::sternoclavicular, Pivot::manubrium})
     for (const double lift : {0.0, 1.0, 30.0, 50.0}) {
-      const RigidMotion motion = liftRotation(s, s.deepest, lift, pivot, 160);
+      const RigidMotion motion = liftRotation(s.deepest, lift, pivotPoint(s, s.deepest, pivot, 160));
       EXPECT_NEAR(s.deepest.y - motion(s.deepest).y, lift, 1e-9) << lift;
     }
 }
@@ -73,7 +74,7 @@ TEST(LiftRotation, BringsTheDeepestPointForwardByTheLift) {
 TEST(LiftRotation, AboutTheSternoclavicularAxisHasTheMeasuredProfile) {
   // 38.6, 28.4 and 19.4 mm at 0, 4 and 8 cm cranial, SD about 6 mm (PMID 33742267).
   const Sternum s = plateSternum();
-  const RigidMotion motion = liftRotation(s, s.deepest, 38.6, Pivot::sternoclavicular, 160);
+  const RigidMotion motion = liftRotation(s.deepest, 38.6, pivotPoint(s, s.deepest, Pivot::sternoclavicular, 160));
   const auto rise = [&](double cranial) {
     const Vec3 p = s.deepest + Vec3{0, 0, cranial};
     return p.y - motion(p).y;
@@ -84,27 +85,71 @@ TEST(LiftRotation, AboutTheSternoclavicularAxisHasTheMeasuredProfile) {
 
 TEST(LiftRotation, AboutTheManubriumLeavesTheJointWhereItIs) {
   const Sternum s = plateSternum();
-  const RigidMotion motion = liftRotation(s, s.deepest, 20, Pivot::manubrium, 160);
+  const RigidMotion motion = liftRotation(s.deepest, 20, s.manubriosternalJoint);
   EXPECT_LT(distance(motion(s.manubriosternalJoint), s.manubriosternalJoint), 1e-12);
 }
 
 TEST(LiftRotation, RefusesWhatNoRotationCanReach) {
   const Sternum s = plateSternum();
-  EXPECT_THROW(liftRotation(s, s.deepest, 200, Pivot::manubrium, 160), Error);
-  EXPECT_THROW(liftRotation(s, {0, -80, -80}, 10, Pivot::manubrium, 160), Error);
+  EXPECT_THROW(liftRotation(s.deepest, 200, s.manubriosternalJoint), Error);
+  EXPECT_THROW(liftRotation({0, -80, -80}, 10, s.manubriosternalJoint), Error);
 }
 
-TEST(IntercostalSpace, LiesBelowTheLowestRibThatJoinsAbove) {
-  const RibCage cage = ribRing();
-  EXPECT_EQ(intercostalSpace(cage, -86 - 16 * 2.5), 4);
-  EXPECT_EQ(intercostalSpace(cage, 0), 0);
+TEST(LiftBoth, BringsBothPointsForwardByTheirLifts) {
+  const Sternum s = plateSternum();
+  const Vec3 axis = pivotPoint(s, s.deepest, Pivot::sternoclavicular, 160);
+  for (const Vec3 other : {Vec3{0, -80, -130}, Vec3{0, -78, -175}})
+    for (const double first : {0.0, 15.0, 40.0})
+      for (const double second : {0.0, 20.0, 45.0}) {
+        if (std::abs(first - second) > 0.8 * distance(other, s.deepest)) continue;   // more than they can turn
+        const RigidMotion motion = liftBoth({s.deepest, first}, {other, second}, axis, 12.7);
+        EXPECT_NEAR(s.deepest.y - motion(s.deepest).y, first, 1e-9);
+        EXPECT_NEAR(other.y - motion(other).y, second, 1e-9);
+        // In the sagittal plane, and the axis keeps its height.
+        EXPECT_EQ(motion(s.deepest).x, s.deepest.x);
+        EXPECT_NEAR(motion(axis).z, axis.z, 1e-9);
+      }
+}
+
+TEST(LiftBoth, ShiftsWithoutTurningByEqualLifts) {
+  const RigidMotion motion = liftBoth({{0, -72, -160}, 25}, {{0, -80, -120}, 25}, {0, -95, 0}, 12.7);
+  EXPECT_NEAR(motion.angle, 0, 1e-12);
+  EXPECT_LT(distance(motion({3, 4, 5}), {3, -21, 5}), 1e-9);
+}
+
+TEST(LiftBoth, IsTheTurnAboutTheAxisWhereThatBringsBothLifts) {
+  const Vec3 axis{0, -95, 0}, low{0, -72, -160}, high{0, -84, -110};
+  const RigidMotion turn = liftRotation(low, 30, axis), both = liftBoth({low, 30}, {high, high.y - turn(high).y}, axis, 12.7);
+  EXPECT_NEAR(both.angle, turn.angle, 1e-9);
+  EXPECT_LT(norm(both.translation), 1e-9);
+}
+
+TEST(LiftBoth, RefusesBarsThatLieOnEachOtherAndLiftsTooFarApart) {
+  const Vec3 axis{0, -95, 0}, low{0, -72, -160};
+  EXPECT_THROW(liftBoth({low, 30}, {low + Vec3{0, 0, 5}, 20}, axis, 12.7), Error);
+  EXPECT_THROW(liftBoth({low, 30}, {low, 30}, axis, 0.1), Error);
+  EXPECT_THROW(liftBoth({low, 60}, {low + Vec3{0, 0, 20}, 0}, axis, 12.7), Error);   // 60 mm over 20
+  EXPECT_THROW(liftBoth({low, 29}, {low + Vec3{0, 0, 30}, 0}, axis, 12.7), Error);   // 75 degrees
+}
+
+TEST(IntercostalSpace, LiesBelowTheLowestRibThatJoinsAboveTheBarOnThatSide) {
+  const Sternum s = plateSternum();
+  const Vec3 between{0, -80, -86 - 16 * 2.5}, level{0, 0, 1};
+  for (const Side side : {Side::right, Side::left}) {
+    EXPECT_EQ(intercostalSpace(s, side, between, level), 4);
+    EXPECT_EQ(intercostalSpace(s, side, {}, level), 0);
+  }
+  // Notches 18 mm beside the middle: at 45 degrees the bar passes them 18 mm higher on the left and lower on the right.
+  const Vec3 oblique = normalized({-1, 0, 1});
+  EXPECT_EQ(intercostalSpace(s, Side::left, between, oblique), 3);
+  EXPECT_EQ(intercostalSpace(s, Side::right, between, oblique), 5);
 }
 
 TEST(Bar, PassesBehindTheLiftedSternumAndEndsAtTheSides) {
   const RibCage cage = ribRing();
   const Sternum& s = cage.anatomy->sternum;
-  const RigidMotion motion = liftRotation(s, s.deepest, 25, Pivot::sternoclavicular, 160);
-  const Bar bar = shapeBar(cage, s.deepest, motion, {});
+  const RigidMotion motion = liftRotation(s.deepest, 25, pivotPoint(s, s.deepest, Pivot::sternoclavicular, 160));
+  const Bar bar = shapeBar(cage, s.deepest, 25, motion, 0, {});
   ASSERT_GE(bar.centerline.size(), 3u);
   const Vec3 middle = bar.centerline[bar.centerline.size() / 2];
   const double back = -70 - 25;  // of the plate, lifted
@@ -114,4 +159,17 @@ TEST(Bar, PassesBehindTheLiftedSternumAndEndsAtTheSides) {
   EXPECT_LT(bar.centerline.front().x, -100);
   EXPECT_GT(bar.centerline.back().x, 100);
   for (const Vec3& p : bar.centerline) EXPECT_NEAR(p.z, middle.z, 1e-9);
+}
+
+TEST(Bar, LiesInThePlaneOfItsTiltWithTheLeftEndHigher) {
+  const RibCage cage = ribRing();
+  const Sternum& s = cage.anatomy->sternum;
+  const RigidMotion motion = liftRotation(s.deepest, 25, pivotPoint(s, s.deepest, Pivot::sternoclavicular, 160));
+  const Bar bar = shapeBar(cage, s.deepest, 25, motion, 4, {});
+  const Vec3 lifted = motion(s.deepest);
+  EXPECT_NEAR(bar.tiltDeg(), 4, 1e-9);
+  for (const Vec3& p : bar.centerline) EXPECT_NEAR(p.z - lifted.z, (p.x - lifted.x) * std::tan(4 * std::numbers::pi / 180), 1e-9);
+  EXPECT_GT(bar.centerline.back().z, bar.centerline.front().z + 14);
+  EXPECT_LT(bar.centerline.front().x, -100);
+  EXPECT_GT(bar.centerline.back().x, 100);
 }

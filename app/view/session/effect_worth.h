@@ -1,0 +1,25 @@
+// What each effect of a scene changes and costs.
+#pragma once
+
+#include "app/view/session/choices.h"
+
+#include "kernel/host/warm.h"
+
+#include <functional>
+
+namespace pectora::view {
+
+/// What leaving out one effect changes.
+struct EffectWorth {
+  std::string id;
+  bool isNeeded = false;      ///< without it points are held by nothing
+  double largest = 0, rms = 0;   ///< change of the skin without it, mm
+  double milliseconds = 0;    ///< of one evaluation of all forces that it costs
+};
+
+/// Leaves out each effect that is on in turn and solves again from `with`, the motion of `scene` for `plan` that `whole` has
+/// compiled. `progress` from 0 to 1. Throws Cancelled.
+std::vector<EffectWorth> measureEffects(const Choices& choices, const Scene& scene, const Plan& plan, const Motion& with, const Compiled& whole,
+                                        Registry& registry, Host& host, const std::function<void(double, const std::string&)>& progress);
+
+}  // namespace pectora::view
