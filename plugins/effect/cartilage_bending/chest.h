@@ -7,8 +7,9 @@ namespace pectora {
 
 /// Stiffness of the chest against the way of the deepest point, N/mm. Each cartilage is a beam that is clamped at its rib and
 /// guided at its medial end, k = 12 E I / L^3 of its length at rest, in series with its rib; it counts with the square of its
-/// end's way over that of the deepest point. `youngsModulus` in N/mm^2, `secondMoment` I in mm^4, `ribStiffness` of a rib's front
-/// end in N/mm. 0 for a plan that lifts nothing.
+/// end's way over that of the deepest point. As the plan leaves the ribs where they are, the short cartilages 1 to 3 make up two
+/// thirds of it, and forces come out at two to three times the 108 to 175 N that were measured in patients. `youngsModulus` in
+/// N/mm^2, `secondMoment` I in mm^4, `ribStiffness` of a rib's front end in N/mm. 0 for a plan that lifts nothing.
 double chestStiffness(const Plan& plan, double youngsModulus, double secondMoment, double ribStiffness);
 
 /// I of an ellipse about the axis across `depth`, mm^4.
