@@ -16,7 +16,7 @@ constexpr int kControls = 8, kSamples = 40;   // of a cartilage
 constexpr double kGuessedJoin = 0.6;             // where a false rib's cartilage joins the one above, if it cannot be seen
 constexpr double kLeastLikeness = 0.25;          // of a fitted cartilage: halfway to muscle, with some room for noise
 constexpr double kMostGrowth = 1.3;              // of a fitted cartilage over the guess: more is a loop
-constexpr int kFirstSteps = 8, kStepsForEach = 6, kLastSteps = 8;   // of fitting: those of the sternum, one more, all
+constexpr int kFirstSteps = 12, kStepsForEach = 6, kLastSteps = 8;   // of fitting: those of the sternum, one more, all
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
