@@ -28,7 +28,8 @@ struct MovedCartilage {
 /// Carries every cartilage along with the sternum. The costochondral end stays with its tangent, the medial end moves
 /// with the sternum (rigidly) or with the cartilage that it joins, and control points between follow like a beam clamped at both ends:
 /// by 3 s^2 - 2 s^3 of the end's displacement at the part s of the length. Where that makes it longer, the bow
-/// between the ends is flattened until the arc length is the old one; what remains is reported as strain.
+  /// between the ends is flattened until the arc length is the old one; what remains is reported as strain. It is large in
+  /// the short first and second cartilages, because no rib moves here: in a body the upper ribs come along with the manubrium.
 /// Returns one entry for each of cage.cartilages, in order.
 std::vector<MovedCartilage> followSternum(const RibCage& cage, const RigidMotion& sternum);
 

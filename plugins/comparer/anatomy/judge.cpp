@@ -27,6 +27,26 @@ double meanSquare(const std::vector<Vec3>& truth, const std::vector<Vec3>& found
   return sum / double(points.size());
 }
 
+// Whether p lies within the sternum: in the closed contour of the nearest level, at most half a slice of 5 mm away.
+bool isInSternum(const Sternum& sternum, Vec3 p) {
+  const std::vector<Vec3>* nearest = nullptr;
+  for (const std::vector<Vec3>& contour : sternum.contours)
+    if (contour.size() > 2 && std::abs(contour.front().z - p.z) < (nearest ? std::abs(nearest->front().z - p.z) : 2.6)) nearest = &contour;
+  bool isInside = false;
+  for (std::size_t n = 0; nearest && n < nearest->size(); ++n) {
+    const Vec3 a = (*nearest)[n], b = (*nearest)[(n + 1) % nearest->size()];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) isInside = !isInside;
+  }
+  return isInside;
+}
+
+// The part of a cartilage before it enters the sternum: what lies within is bone.
+std::vector<Vec3> beforeSternum(const std::vector<Vec3>& line, const Sternum& sternum) {
+  std::vector<Vec3> part = stepped(line);
+  while (part.size() > 2 && isInSternum(sternum, part.back())) part.pop_back();
+  return part;
+}
+
 // RMS over several lines, each counted by its length, and the worst single one.
 struct LineErrors {
   double sum = 0, weight = 0, worst = 0;
@@ -115,7 +135,8 @@ std::vector<Fact> judgeAnatomy(const Anatomy& found, const RibCage* cage, const 
     for (const Cartilage& c : cage->cartilages) {
       if (c.side != line.side || c.rib != line.rib) continue;
       ++cartilagesFound;
-      cartilages.add(meanSquare(line.centerline, c.curve.sample(60)), polylineLength(line.centerline));
+      const std::vector<Vec3> visible = beforeSternum(line.centerline, exact.sternum);
+      cartilages.add(meanSquare(visible, c.curve.sample(60)), polylineLength(visible));
     }
   }
 

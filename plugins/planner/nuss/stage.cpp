@@ -63,7 +63,7 @@ class Nuss final : public Stage {
       if (std::abs(strain) > kStrainWarning)
         strained += fmt::format("{}{} {} by {:+.0f} %", strained.empty() ? "" : ", ", sideName(c.side), c.rib, 100 * strain);
     }
-    if (!strained.empty()) host.warn("these cartilages would be strained: " + strained);
+    if (!strained.empty()) host.warn("these cartilages would be strained if their ribs stood still, as they do here (in a body the upper ribs come along): " + strained);
     return {plan};
   }
 

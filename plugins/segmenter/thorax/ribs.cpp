@@ -102,6 +102,34 @@ std::vector<Track> chooseRibs(std::vector<Track> tracks, const Fan& fan, const B
   return ribs;
 }
 
+void partMergedFronts(std::vector<FoundRib>& ribs) {
+  constexpr double kNearMm = 8, kApartMm = 11, kBeforeMm = 16, kBackMm = 60, kChordMm = 20;
+  std::vector<std::vector<Vec3>> lines;
+  for (const FoundRib& rib : ribs) lines.push_back(rib.body.line);
+  for (std::size_t r = 0; r < ribs.size(); ++r) {
+    const std::vector<Vec3>& line = lines[r];
+    if (line.size() < 2 || polylineLength(line) < kBackMm + 2 * kChordMm) continue;
+    const double step = polylineLength(line) / double(line.size() - 1);
+    const auto back = std::size_t(kBackMm / step), chord = std::size_t(kChordMm / step);
+    // How far a point is from the nearest other rib.
+    const auto apart = [&](Vec3 p) {
+      double nearest = 1e300;
+      for (std::size_t o = 0; o < ribs.size(); ++o)
+        for (std::size_t n = back; o != r && ribs[o].side == ribs[r].side && n < lines[o].size(); ++n) nearest = std::min(nearest, distance(lines[o][n], p));
+      return nearest;
+    };
+    if (apart(line.back()) > kNearMm) continue;
+    std::size_t last = line.size() - 1;
+    while (last > back + 2 * chord && apart(line[last]) < kApartMm) --last;
+    last = std::max(back + 2 * chord, last - std::size_t(kBeforeMm / step));
+    const Vec3 before = normalized(line[last - chord] - line[last - 2 * chord]), now = normalized(line[last] - line[last - chord]);
+    std::vector<Vec3>& mended = ribs[r].body.line;
+    mended.resize(last + 1);
+    for (std::size_t n = 1; mended.size() < line.size(); ++n)
+      mended.push_back(mended.back() + normalized(now + (now - before) * (0.5 + double(n) / double(chord))) * step);
+  }
+}
+
 Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top) {
   std::array<std::vector<FoundRib*>, 2> sides;
   for (FoundRib& rib : ribs) {
@@ -212,6 +240,7 @@ std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine
           std::none_of(ribs.begin(), ribs.end(), [&](const FoundRib& r) { return runsAlong(rib.body.line, r.body.line); }))
         ribs.push_back(std::move(rib));
   }
+  partMergedFronts(ribs);
   switch (numberRibs(ribs, bottom, top)) {
     case Counting::fromFirst: break;
     case Counting::fromLast:

@@ -1,6 +1,7 @@
 #include "plugins/splines/cartilage/cage.h"
 
 #include "plugins/splines/cartilage/fit.h"
+#include "plugins/splines/cartilage/joint_fit.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,9 @@ namespace {
 
 constexpr int kControls = 8, kSamples = 40;   // of a cartilage
 constexpr double kGuessedJoin = 0.6;             // where a false rib's cartilage joins the one above, if it cannot be seen
-constexpr double kLeastLikeness = 0.25;          // of a followed cartilage: halfway to muscle, with some room for noise
+constexpr double kLeastLikeness = 0.25;          // of a fitted cartilage: halfway to muscle, with some room for noise
+constexpr double kMostGrowth = 1.3;              // of a fitted cartilage over the guess: more is a loop
+constexpr int kFirstSteps = 12, kStepsForEach = 6, kLastSteps = 8;   // of fitting: those of the sternum, one more, all
 constexpr int kLastTrueRib = 7, kLastFalseRib = 10;
 
 const Notch* findNotch(const Sternum& sternum, Side side, int rib) {
@@ -83,11 +86,19 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
     cage.ribs.push_back(std::move(curve));
   }
 
-  // The first guess of every cartilage: from its junction to its notch, or to the cartilage above.
+  // Every cartilage is guessed from its junction to its notch, or to the one above, and fitted where the CT shows it.
   std::string missing, guessed;
   const auto note = [](std::string& list, Side side, int number) { list += fmt::format("{}{} {}", list.empty() ? "" : ", ", sideName(side), number); };
   std::vector<Course> courses;
   std::vector<Curve> guesses;
+  const auto isSeen = [&](std::size_t n) {
+    return ct && courses[n].likeness > kLeastLikeness && polylineLength(courses[n].line) < kMostGrowth * guesses[n].length();
+  };
+  const auto fit = [&](int steps, bool isShapeFree) {
+    poll();
+    if (ct) fitJointly(*ct, *anatomy, courses, settings.cartilageHu, steps, isShapeFree);
+  };
+  const auto curveOf = [&](std::size_t n) { return isSeen(n) ? fitCurve(resamplePolyline(courses[n].line, kSamples), kControls) : guesses[n]; };
   for (int number = 1; number <= kLastFalseRib; ++number) {
     for (Side side : {Side::right, Side::left}) {
       const Rib* rib = anatomy->rib(side, number);
@@ -99,23 +110,22 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
       }
       const auto ribCurve = std::find_if(cage.ribs.begin(), cage.ribs.end(), [&](const RibCurve& r) { return r.side == side && r.number == number; });
       const Vec3 start = ribCurve->curve.at(1), along = normalized(ribCurve->curve.derivative(1));
-      const Curve* upper = notch ? nullptr : &guesses[std::size_t(above - courses.begin())];
-      const Vec3 end = notch ? notch->position : upper->at(kGuessedJoin);
-      const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : upper->derivative(kGuessedJoin));
+      const Curve upper = notch ? Curve{} : curveOf(std::size_t(above - courses.begin()));
+      const Vec3 end = notch ? notch->position : upper.at(kGuessedJoin);
+      const Vec3 arrival = normalized(notch ? arrivalDirection(side, number) : upper.derivative(kGuessedJoin));
       guesses.push_back(alongPleura(hermiteCurve(start, along, end, arrival, settings.handle), anatomy->pleura));
-      courses.push_back({side, number, upper ? number - 1 : 0, notch && notch->isGiven, guesses.back().sample(kSamples), 0});
+      courses.push_back({.side = side, .rib = number, .joins = notch ? 0 : number - 1, .isEndGiven = notch && notch->isGiven,
+                         .line = guesses.back().sample(kSamples), .end = end});
     }
+    if (number == kLastTrueRib) fit(kFirstSteps, false);
+    if (number > kLastTrueRib) fit(kStepsForEach, false);
   }
-
-  // Through the CT, where it shows them.
-  poll();
-  if (ct) traceCartilages(*ct, *anatomy, courses, settings.trace, poll);
+  fit(kLastSteps, true);
   for (std::size_t n = 0; n < courses.size(); ++n) {
-    const Course& c = courses[n];
-    const bool isSeen = ct && c.likeness > kLeastLikeness;
-    if (ct && !isSeen) note(guessed, c.side, c.rib);
-    if (isSeen && c.isEndGiven) courses[n].line.back() = guesses[n].at(1);
-    Cartilage cartilage{c.side, c.rib, isSeen ? fitCurve(resamplePolyline(c.line, kSamples), kControls) : guesses[n], c.joins, 0};
+    Course& c = courses[n];
+    if (c.isEndGiven) c.line.back() = c.end;
+    if (ct && !isSeen(n)) note(guessed, c.side, c.rib);
+    Cartilage cartilage{c.side, c.rib, curveOf(n), c.joins, 0};
     if (c.joins > 0) {
       const Cartilage* upper = findCartilage(cage, c.side, c.joins);
       cartilage.joinsAt = upper->curve.closest(cartilage.curve.at(1));

@@ -1,10 +1,10 @@
 // Builds the rib cage's curves from the segmented anatomy.
 #pragma once
 
-#include "plugins/splines/cartilage/trace.h"
-
 #include "kernel/value/rib_cage.h"
+#include "kernel/value/volume.h"
 
+#include <functional>
 #include <string>
 
 namespace pectora {
@@ -12,12 +12,13 @@ namespace pectora {
 struct CageSettings {
   double controlSpacing = 25;   ///< mm of rib for one control point
   double handle = 0.38;         ///< length of a guessed cartilage's end handles over the distance of its ends
-  TraceSettings trace;
+  double cartilageHu = 100;     ///< mean of unossified cartilage
 };
 
 /// Ribs as least-squares splines; cartilages 1-7 from the costochondral junction to their notch; 8-10 to the cartilage
-/// above, as the costal arch. With a CT each is followed through the cartilage that can be seen there. Where it cannot, or without
-/// one, it is guessed: seen from the front a cubic that leaves along the rib, and in depth along the pleura, which shows the shape
+/// above, as the costal arch. With a CT they are fitted to the cartilage that can be seen there: first those of the sternum
+/// together, then one more at a time, guessed from the one above that is already fitted. Where none can be seen, or without a CT,
+/// a cartilage is guessed: seen from the front a cubic that leaves along the rib, and in depth along the pleura, which shows the shape
 /// of a pit, at the distance that its ends have from it. What is guessed or cannot be built is said in `warnings`.
 /// `poll` is called now and then.
 RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, const CageSettings& settings,

@@ -12,7 +12,7 @@ class CartilageSplines final : public Stage {
   void describe(Visitor& v) override {
     v.real("control_spacing", settings_.controlSpacing, "mm", {5, 100}, {15, 40}, "Length of rib that one control point stands for");
     v.real("handle", settings_.handle, "", {0.05, 1.5}, {0.2, 0.6}, "Length of a guessed cartilage's end handles over the distance of its ends: how far it sags, where it cannot be seen");
-    v.real("cartilage_hu", settings_.trace.cartilageHu, "HU", {20, 400}, {60, 140}, "Mean of unossified cartilage in the CT");
+    v.real("cartilage_hu", settings_.cartilageHu, "HU", {20, 400}, {60, 140}, "Mean of unossified cartilage in the CT");
   }
 
   Outputs run(const Inputs& inputs, Host& host) override {

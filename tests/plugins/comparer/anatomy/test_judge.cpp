@@ -73,3 +73,16 @@ TEST(JudgeAnatomy, CountsWrongNumbersAndMissingEnds) {
   for (Rib& r : cut.ribs) r.centerline[1] = lerp(r.centerline[0], r.centerline[1], 0.8);
   EXPECT_GT(figure(judgeAnatomy(cut, nullptr, truthOf(a)), "rib_rms"), 3);
 }
+
+TEST(JudgeAnatomy, LeavesOutWhatOfACartilageLiesWithinTheSternum) {
+  const Anatomy a = simple();
+  Truth truth = truthOf(a);
+  // The truth goes on to 5 mm from the midline, the cartilage that was found ends at the bone, 15 mm from it.
+  truth.cartilages.push_back({Side::left, 4, 0, {{60, -75, -90}, {5, -75, -90}}});
+  RibCage cage;
+  cage.cartilages.push_back({Side::left, 4, {3, clampedKnots(4, 3), {{60, -75, -90}, {45, -75, -90}, {30, -75, -90}, {15, -75, -90}}}, 0, 0});
+  const auto facts = judgeAnatomy(a, &cage, truth);
+  // The last point that is kept lies less than one step of 2 mm within the bone.
+  EXPECT_LT(figure(facts, "cartilage_rms"), 0.5);
+  EXPECT_EQ(figure(facts, "cartilages_found"), 1);
+}

@@ -200,3 +200,22 @@ TEST(PatientTurn, IsTheAngleOfTheLinesBetweenTheTwoSides) {
 }
 
 }  // namespace
+
+TEST(PartMergedFronts, PutsAFrontBackThatStrayedToTheRibAbove) {
+  // Two arcs of 200 mm with a radius of 130 mm, one 18 mm above the other; the lower one's last 30 mm climb to the upper one.
+  const auto arc = [](double s, double z) { return Vec3{130 * std::sin(s / 130), 130 * std::cos(s / 130), z}; };
+  std::vector<FoundRib> ribs(3);
+  for (double s = 0; s <= 200; s += 2) {
+    ribs[0].body.line.push_back(arc(s, 18));
+    ribs[1].body.line.push_back(arc(s, s < 170 ? 0 : 16 * (s - 170) / 30));
+    ribs[2].body.line.push_back(arc(s, -18));
+  }
+  const std::vector<FoundRib> before = ribs;
+  partMergedFronts(ribs);
+  EXPECT_EQ(ribs[2].body.line, before[2].body.line);
+  // Going on with the bend of the 40 mm before: on a circle that is exact but for the polyline's own corners.
+  for (const std::size_t r : {0, 1}) {
+    ASSERT_EQ(ribs[r].body.line.size(), before[r].body.line.size());
+    EXPECT_LT(distance(ribs[r].body.line.back(), arc(200, r == 0 ? 18 : 0)), 2) << r;
+  }
+}
