@@ -94,7 +94,7 @@ struct System {
   /// The node of a point of layer l, 0 the skin; and of an anchor.
   std::size_t node(int l, std::size_t point) const { return std::size_t(l) * points() + point; }
   std::size_t anchorNode(std::size_t anchor) const { return node(layers, anchor); }
-  /// Energy of all terms; overwrites `gradient`.
+  /// Energy of all terms; overwrites `gradient` of the free nodes.
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce, Precision precision = Precision::full) const;
   double energy(const NodeVectors& positions) const;
   std::vector<double> stiffnessBound() const;

@@ -31,7 +31,7 @@ void Lbfgs::begin(const NodeVectors& gradient, std::size_t free) {
 void Lbfgs::findDirection(const NodeVectors& gradient, std::size_t free) {
   std::vector<double> alpha(pairs_.size());
   copy(gradient, q_, free);
-  scaleAndAdd(metricGradient_, 0, direction_, free);
+  direction_ = metricGradient_;
   for (std::size_t k = pairs_.size(); k-- > 0;) {
     alpha[k] = pairs_[k].inverseSy * dot(pairs_[k].s, q_, free);
     axpy(-alpha[k], pairs_[k].y, q_, free);
@@ -78,7 +78,7 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
   Trial trial;
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
-  q_ = direction_ = metricGradient_ = spare_ = SingleVectors(std::max(free, system.anchorNode(0)));
+  if (const std::size_t nodes = std::max(free, system.anchorNode(0)); q_.size() != nodes) q_ = direction_ = metricGradient_ = spare_ = SingleVectors(nodes);
   if (metric_->refresh(x)) pairs_.clear(), scale_ = 1;
   copy(e.gradient, q_, free);
   metric_->apply(q_, metricGradient_);

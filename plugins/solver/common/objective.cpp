@@ -26,7 +26,10 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
   const std::size_t count = objective.system().freeNodes;
   const double slope = dot(e.gradient, d, count);
   if (!(slope < 0)) return 0;
-  place = x;
+  // The driven nodes stay where they are while one minimiser works.
+  if (place.size() != x.size()) place = x;
+  else
+    for (auto v : {&NodeVectors::x, &NodeVectors::y, &NodeVectors::z}) std::copy_n((x.*v).begin(), count, (place.*v).begin());
   const double rounding = (objective.precision() == Precision::full ? 1e-13 : 1e-6) * std::abs(e.value);
   double step = firstStep, before = 0;
   for (int halving = 0; halving < 40; ++halving) {

@@ -73,13 +73,13 @@ class QuasiStatic final : public Session {
       movement.apply(next, trial);
       const double forcing = movement.isFromStart() ? acceleration_.warmForcing : acceleration_.forcing;
       if (predictor_) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
-      const NodeVectors predicted = trial;
+      // From a given start there is no path to keep to.
+      const NodeVectors predicted = movement.isFromStart() ? NodeVectors() : trial;
       const int left = most - solution.iterations;
       const double tolerance = std::max(settings_.tolerance, kLooseTolerance);
       Outcome outcome = minimise(objective, trial, end, tolerance, std::min(left, stepIterations_), next, solution, host);
       const bool isExhausted = solution.iterations >= most;
       const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end.isWithin(kLooseTolerance));
-      // From a given start there is no path to keep to.
       const bool isOnCourse = isLeast || !predictor_ || movement.isFromStart() ||
                               largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
       if ((isNear && isOnCourse) || isLeast || isExhausted) {

@@ -41,3 +41,22 @@ TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
   for (const char* kept : {"correct.rib", "correct.joint", "\"notch\"", "bone_regions"}) EXPECT_NE(summary.find(kept), std::string::npos) << kept;
   fs::remove_all(folder);
 }
+
+TEST(Corrections, AThresholdOfItsOwnInABoxDecidesWhatIsBoneThere) {
+  const fs::path folder = fs::temp_directory_path() / "pectora_test_bone_regions";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  // Nothing to the patient's left is as dense as 3000 HU.
+  std::ofstream(folder / "bones.lua") << R"(
+    local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }
+    local usual = segmenter.thorax(ct, {})
+    local denser = segmenter.thorax(ct, { bone_regions = { 30, -400, -2000, 400, 400, 2000, 3000 } })
+    print("right", usual.ribs_right == denser.ribs_right)
+    print("left", usual.ribs_left - denser.ribs_left >= 6))";
+  const std::string command = std::string(PECTORA_PROGRAM) + " run " + (folder / "bones.lua").string() + " > " + (folder / "log.txt").string() + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << textOf(folder / "log.txt");
+  const std::string log = textOf(folder / "log.txt");
+  EXPECT_NE(log.find("right\ttrue"), std::string::npos) << log;
+  EXPECT_NE(log.find("left\ttrue"), std::string::npos) << log;
+  fs::remove_all(folder);
+}
