@@ -74,7 +74,7 @@ class MultigridMinimiser final : public Minimiser {
   }
 
  private:
-  static constexpr int kFastIterations = 60;
+  static constexpr int kFastIterations = 150;
 
   const System& system_;
   std::shared_ptr<Metric> metric_;
