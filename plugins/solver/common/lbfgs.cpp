@@ -19,9 +19,12 @@ void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
 }  // namespace
 
 // From the metric alone.
-void Lbfgs::begin(const NodeVectors& gradient, std::size_t free) {
+void Lbfgs::forget() {
   pairs_.clear();
   scale_ = 1;
+}
+
+void Lbfgs::applyMetric(const NodeVectors& gradient, std::size_t free) {
   copy(gradient, q_, free);
   metric_->apply(q_, metricGradient_);
 }
@@ -46,9 +49,8 @@ void Lbfgs::findDirection(const NodeVectors& gradient, std::size_t free) {
 
 // Keeps the last step if the curvature along it is positive. The oldest pair gives its room.
 void Lbfgs::remember(double step, const NodeVectors& gradientBefore, const NodeVectors& gradient, std::size_t free) {
-  copy(gradient, q_, free);
   std::swap(metricGradient_, spare_);
-  metric_->apply(q_, metricGradient_);
+  applyMetric(gradient, free);
   Pair pair;
   if (pairs_.size() == memory_) {
     pair = std::move(pairs_.front());
@@ -79,9 +81,8 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
   if (const std::size_t nodes = std::max(free, system.anchorNode(0)); q_.size() != nodes) q_ = direction_ = metricGradient_ = spare_ = SingleVectors(nodes);
-  if (metric_->refresh(x)) pairs_.clear(), scale_ = 1;
-  copy(e.gradient, q_, free);
-  metric_->apply(q_, metricGradient_);
+  if (metric_->refresh(x)) forget();
+  applyMetric(e.gradient, free);
   for (int n = 0; n < limits.iterations; ++n) {
     watch.iteration(e);
     if (e.isWithin(limits.tolerance)) return Outcome::converged;
@@ -92,7 +93,8 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
       // What it remembers misleads here: begin anew. From the metric alone, no way down is the end.
       if (pairs_.empty()) return Outcome::stalled;
       metric_->refresh(x);
-      begin(e.gradient, free);
+      forget();
+      applyMetric(e.gradient, free);
       continue;
     }
     remember(step, trial.evaluation.gradient, e.gradient, free);   // the search left the old place in the trial's room

@@ -21,7 +21,8 @@ class Lbfgs final : public Minimiser {
     SingleVectors s, y, my;
     double inverseSy;
   };
-  void begin(const NodeVectors& gradient, std::size_t free);
+  void forget();
+  void applyMetric(const NodeVectors& gradient, std::size_t free);
   void findDirection(const NodeVectors& gradient, std::size_t free);
   void remember(double step, const NodeVectors& gradientBefore, const NodeVectors& gradient, std::size_t free);
 
@@ -30,7 +31,7 @@ class Lbfgs final : public Minimiser {
   std::deque<Pair> pairs_;
   double scale_ = 1;   // of the metric
   SingleVectors q_, direction_;
-  SingleVectors metricGradient_, spare_;   // M^-1 gradient, so that the metric is applied once an iteration
+  SingleVectors metricGradient_, spare_;   // M^-1 gradient, and that of the place before: the metric is applied once an iteration
 };
 
 }  // namespace pectora
