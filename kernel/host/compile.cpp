@@ -67,6 +67,24 @@ void checkIslands(const System& system) {
         .at(system.nodeName(first) + " and others").advise("Call effect.attachment and effect.cross in the scene; of a solid wall tissue and attachment");
 }
 
+// The driven nodes after part t of the plan, of which the part `reached` is carried out.
+std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, const Plan& plan, double reached, double t) {
+  std::vector<Vec3> positions;
+  positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
+  for (const Anchor& anchor : scene.anchors) {
+    positions.push_back(plan.moved(anchor, reached * t));
+    for (const auto& [steering, guides] : compiled.steering)
+      if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
+  }
+  for (const auto& [steering, guides] : compiled.steering)
+    if (guides > 0)
+      for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!isFinite(positions[i]))
+      throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));
+  return positions;
+}
+
 }  // namespace
 
 Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
@@ -160,28 +178,6 @@ BarLoad shareLift(const Compiled& compiled, const Plan& plan) {
   load.force = squares > 0 ? chest * load.part * lifts / squares : 0;
   return load;
 }
-
-namespace {
-
-// The driven nodes after part t of the plan, of which the part `reached` is carried out.
-std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, const Plan& plan, double reached, double t) {
-  std::vector<Vec3> positions;
-  positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
-  for (const Anchor& anchor : scene.anchors) {
-    positions.push_back(plan.moved(anchor, reached * t));
-    for (const auto& [steering, guides] : compiled.steering)
-      if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
-  }
-  for (const auto& [steering, guides] : compiled.steering)
-    if (guides > 0)
-      for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    if (!isFinite(positions[i]))
-      throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));
-  return positions;
-}
-
-}  // namespace
 
 Drive makeDrive(const Scene& scene, const Compiled& compiled, const Plan& plan) {
   const double reached = shareLift(compiled, plan).part;

@@ -28,8 +28,6 @@ class RegionSolve {
       : scene_(scene), whole_(whole), still_(still), solver_(solver), registry_(registry) {}
   /// As Session::solve for the whole system; `drive` is the plan's.
   Solution solve(const Plan& plan, const Drive& drive, const NodeVectors* start, Host& host);
-  /// The last one that was solved for.
-  const Region& region() const { return region_; }
 
  private:
   Region movedBy(const Drive& drive) const;

@@ -140,4 +140,13 @@ std::vector<Vec3> resamplePolyline(std::span<const Vec3> line, int count) {
   return points;
 }
 
+bool isInContour(std::span<const Vec3> contour, Vec3 p) {
+  bool isInside = false;
+  for (std::size_t n = 0; n < contour.size(); ++n) {
+    const Vec3 a = contour[n], b = contour[(n + 1) % contour.size()];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) isInside = !isInside;
+  }
+  return isInside;
+}
+
 }  // namespace pectora

@@ -37,4 +37,7 @@ double polylineLength(std::span<const Vec3> line);
 /// `count` >= 2 points at equal arc length along a polyline.
 std::vector<Vec3> resamplePolyline(std::span<const Vec3> line, int count);
 
+/// Whether p lies in a closed contour of one axial level; z is not looked at.
+bool isInContour(std::span<const Vec3> contour, Vec3 p);
+
 }  // namespace pectora

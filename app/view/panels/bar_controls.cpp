@@ -34,7 +34,8 @@ void secondBar(Context& context) {
         const Vec3 above = plan->bars.front().point + Vec3{0, 0, kSecondAbove};
         assign(settings, "second_lift", std::round(10 * std::max(0.0, above.y - plan->motion(above).y)) / 10);
       }
-    } else { std::erase_if(settings, [](const auto& setting) { return aboutOf(setting.first) == About::secondBar; });
+    } else {
+      std::erase_if(settings, [](const auto& setting) { return aboutOf(setting.first) == About::secondBar; });
     }
     context.changed(false);
   }

@@ -32,12 +32,7 @@ bool isInSternum(const Sternum& sternum, Vec3 p) {
   const std::vector<Vec3>* nearest = nullptr;
   for (const std::vector<Vec3>& contour : sternum.contours)
     if (contour.size() > 2 && std::abs(contour.front().z - p.z) < (nearest ? std::abs(nearest->front().z - p.z) : 2.6)) nearest = &contour;
-  bool isInside = false;
-  for (std::size_t n = 0; nearest && n < nearest->size(); ++n) {
-    const Vec3 a = (*nearest)[n], b = (*nearest)[(n + 1) % nearest->size()];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) isInside = !isInside;
-  }
-  return isInside;
+  return nearest && isInContour(*nearest, p);
 }
 
 // The part of a cartilage before it enters the sternum: what lies within is bone.

@@ -13,17 +13,15 @@ constexpr double kSternumMm = 1.5;     // around the sternum's contours, its cor
 
 // Whether p lies in a closed axial contour, or within `margin` of it; z is not looked at.
 bool isInOrNear(const std::vector<Vec3>& contour, Vec3 p, double margin) {
-  bool isInside = false;
   double nearest = 1e300;
   for (std::size_t n = 0; n < contour.size(); ++n) {
     const Vec3 a = contour[n], b = contour[(n + 1) % contour.size()];
     const double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + x * (p.y - a.y) / y) isInside = !isInside;
     const double t = square > 0 ? std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / square, 0.0, 1.0) : 0;
     const double dx = p.x - a.x - t * x, dy = p.y - a.y - t * y;
     nearest = std::min(nearest, dx * dx + dy * dy);
   }
-  return isInside || nearest < margin * margin;
+  return nearest < margin * margin || isInContour(contour, p);
 }
 
 }  // namespace

@@ -16,13 +16,21 @@ std::string textOf(const fs::path& path) {
   return text.str();
 }
 
+// Runs a script in an empty folder; returns what the program printed.
+std::string logOf(const fs::path& folder, const std::string& script) {
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ofstream(folder / "script.lua") << script;
+  const std::string command = std::string(PECTORA_PROGRAM) + " run " + (folder / "script.lua").string() + " > " + (folder / "log.txt").string() + " 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << textOf(folder / "log.txt");
+  return textOf(folder / "log.txt");
+}
+
 }  // namespace
 
 TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
   const fs::path folder = fs::temp_directory_path() / "pectora_test_correct";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  std::ofstream(folder / "correct.lua") << R"(
+  const std::string log = logOf(folder, R"(
     local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }
     local anatomy = segmenter.thorax(ct, { bone_regions = { -200, -200, -330, 200, 200, -320, 150 } })
     local before = anatomy.ribs_left
@@ -31,10 +39,8 @@ TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
     print(before - anatomy.ribs_left)
     local ok, message = pcall(correct.rib, anatomy, { side = "left", number = 12 })
     print(ok, tostring(message))
-    report.files{ anatomy = anatomy, cage = splines.cartilage(anatomy, ct), path = ")" << (folder / "out").string() << R"(" })";
-  const std::string command = std::string(PECTORA_PROGRAM) + " run " + (folder / "correct.lua").string() + " > " + (folder / "log.txt").string() + " 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << textOf(folder / "log.txt");
-  const std::string log = textOf(folder / "log.txt"), summary = textOf(folder / "out/summary.json");
+    report.files{ anatomy = anatomy, cage = splines.cartilage(anatomy, ct), path = ")" + (folder / "out").string() + R"(" })");
+  const std::string summary = textOf(folder / "out/summary.json");
   EXPECT_NE(log.find("1.0\n"), std::string::npos) << log;
   EXPECT_NE(log.find("there is no such rib"), std::string::npos) << log;
   EXPECT_NE(log.find("; left 1, "), std::string::npos) << log;
@@ -44,18 +50,13 @@ TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
 
 TEST(Corrections, AThresholdOfItsOwnInABoxDecidesWhatIsBoneThere) {
   const fs::path folder = fs::temp_directory_path() / "pectora_test_bone_regions";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
   // Nothing to the patient's left is as dense as 3000 HU.
-  std::ofstream(folder / "bones.lua") << R"(
+  const std::string log = logOf(folder, R"(
     local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }
     local usual = segmenter.thorax(ct, {})
     local denser = segmenter.thorax(ct, { bone_regions = { 30, -400, -2000, 400, 400, 2000, 3000 } })
     print("right", usual.ribs_right == denser.ribs_right)
-    print("left", usual.ribs_left - denser.ribs_left >= 6))";
-  const std::string command = std::string(PECTORA_PROGRAM) + " run " + (folder / "bones.lua").string() + " > " + (folder / "log.txt").string() + " 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << textOf(folder / "log.txt");
-  const std::string log = textOf(folder / "log.txt");
+    print("left", usual.ribs_left - denser.ribs_left >= 6))");
   EXPECT_NE(log.find("right\ttrue"), std::string::npos) << log;
   EXPECT_NE(log.find("left\ttrue"), std::string::npos) << log;
   fs::remove_all(folder);
