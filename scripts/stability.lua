@@ -13,6 +13,7 @@ local p = parameters{
 local explicit = { verlet = true, semi_implicit = true }
 local ripples = { verlet = true, semi_implicit = true, xpbd = true }
 local stepping = { verlet = true, semi_implicit = true, implicit = true, xpbd = true }
+local in_time = { verlet = true, semi_implicit = true, implicit = true }
 local springs_only = { projective = true, xpbd = true }
 local solvers = { { "verlet" }, { "semi_implicit" }, { "implicit" }, { "implicit", "bdf2" }, { "newton" }, { "lbfgs" }, { "projective" }, { "multigrid" }, { "xpbd" } }
 local row = "%-22s %-14s %-8s %-10s %9s %9s %8s %7s  %s"
@@ -51,11 +52,12 @@ local function try(case, s, label)
     local text = tostring(m):gsub("\n", " ")
     counts.refused = counts.refused + 1
     local may = case.must == "refuse" or case.must == "flag" or (case.time_step > 0 and explicit[name]) or (case.springs_alone == 0 and springs_only[name])
+      or (case.in_time == 1 and not in_time[name])
     if not may then wrong = "was refused" end
     if text:find("internal error", 1, true) then wrong = "failed inside" end
     cells = { "refused", "-", "-", "-", "-", text }
   end
-  if ok and case.time_step > 0 and explicit[name] then wrong = "was not refused" end
+  if ok and (case.time_step > 0 and explicit[name] or case.in_time == 1 and not in_time[name]) then wrong = "was not refused" end
   if wrong then broken = broken + 1 end
   if wrong or not p.brief then
     local said = wrong and ("BROKEN: " .. wrong .. "; " .. cells[6]) or cells[6]

@@ -126,6 +126,7 @@ Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
     use.reason = part.emptyBecause;
     use.springs = part.springs.size();
     use.notes = part.notes;
+    use.movesInTime = part.dynamics.isAskedFor();
     if (part.loadInCt) {
       compiled.isLoadedInCt = true;
       if (loads == CtLoads::alone) part.terms.clear();
@@ -146,7 +147,12 @@ Compiled compile(const Scene& scene, Registry& registry, CtLoads loads) {
     for (const Vec3& guide : part.guides) system.rest.append(guide);
     compiled.steering.push_back({std::move(part.steering), part.guides.size()});
     compiled.effects.push_back(std::move(use));
+    Dynamics& dynamics = system.dynamics;
+    dynamics = {std::max(dynamics.duration, part.dynamics.duration), std::max(dynamics.lifting, part.dynamics.lifting),
+                std::max(dynamics.interval, part.dynamics.interval), dynamics.damping + part.dynamics.damping};
   }
+  // A shape without load is one at rest.
+  if (loads == CtLoads::alone) system.dynamics = {};
   if (!stencil.empty()) system.terms.push_back(makeLatticeTerm(stencilNames, system, std::move(stencil)));
   if (!springs.empty()) system.terms.push_back(makeSpringTerm(springNames, system, std::move(springs)));
   for (auto& term : others) system.terms.push_back(std::move(term));

@@ -17,6 +17,7 @@ struct EffectUse {
   std::vector<std::string> notes = {};   ///< such as calibrated constants
   bool hasHessian = true;           ///< whether all its terms offer one
   bool hasSprings = true;           ///< whether it is nothing but springs
+  bool movesInTime = false;         ///< whether it asks for a motion in time, in place of its end at rest
   double changeRms = NAN, changeMax = NAN;   ///< mm of the skin, as probed by leaving it out; only `explain` asks
   std::string notProbed = {};            ///< why there is no such figure
 };

@@ -22,18 +22,22 @@ constexpr double kMoved = 3;   // mm
 
 class Prober {
  public:
-  Prober(const Scene& scene, const Plan& plan, Registry& registry, Host& host) : scene_(scene), plan_(plan), registry_(registry), host_(host) {}
+  Prober(const Scene& scene, const Plan& plan, Registry& registry, Host& host)
+      : scene_(scene), plan_(plan), registry_(registry), host_(host), uses_(compile(scene, registry).effects) {}
+
+  /// What becomes of the scene's effects, in its order.
+  const std::vector<EffectUse>& uses() const { return uses_; }
 
   using Calls = std::vector<std::shared_ptr<const EffectCall>>;
-  /// The skin with these effects, and what became of them. Throws Error if it does not come to rest.
-  std::vector<Vec3> skin(const Calls& calls, const Rough& rough, std::vector<EffectUse>* uses = nullptr) const {
+  /// The skin at rest with these effects of the scene. Throws Error if it does not come to rest.
+  std::vector<Vec3> skin(const Calls& calls, const Rough& rough) const {
     auto part = std::make_shared<Scene>(scene_);
     part->effects = calls;
+    for (std::size_t i = 0; i < uses_.size(); ++i)
+      if (uses_[i].movesInTime) std::erase(part->effects, scene_.effects[i]);
     auto solver = registry_.open(rough.solver).descriptor->makeSolver();
     applySettings({{"tolerance", rough.tolerance}, {"max_iterations", double(rough.iterations)}}, [&](Visitor& v) { solver->describe(v); });
-    WarmSolve warm(part, rough.solver, std::move(solver), registry_, host_);
-    if (uses) *uses = warm.compiled().effects;
-    const auto motion = warm.solve(plan_, host_);
+    const auto motion = WarmSolve(part, rough.solver, std::move(solver), registry_, host_).solve(plan_, host_);
     if (motion->status != SolveStatus::converged) throw Error("the wall does not come to rest", ErrorKind::runFailed);
     return motion->outer;
   }
@@ -61,6 +65,7 @@ class Prober {
   const Plan& plan_;
   Registry& registry_;
   Host& host_;
+  std::vector<EffectUse> uses_;
 };
 
 std::string firstLine(const Error& error) {
@@ -68,26 +73,21 @@ std::string firstLine(const Error& error) {
   return text.substr(0, text.find('\n'));
 }
 
-// The skin of the whole scene, with its effects' use; and the solver that found it.
+// The skin of the whole scene, and the solver that found it.
 struct Whole {
   std::vector<Vec3> skin;
-  std::vector<EffectUse> uses;
   Rough by;
 };
 Whole solveWhole(const Prober& prober, const Scene& scene, Registry& registry) {
-  Whole whole{{}, {}, kFast};
   if (registry.has(kFast.solver)) try {
-    whole.skin = prober.skin(scene.effects, kFast, &whole.uses);
-    return whole;
+    return {prober.skin(scene.effects, kFast), kFast};
   } catch (const Error&) {   // an effect without a Hessian, or no rest: the other one may
   }
-  whole.by = kOther;
-  whole.skin = prober.skin(scene.effects, kOther, &whole.uses);
-  return whole;
+  return {prober.skin(scene.effects, kOther), kOther};
 }
 
 Probe probe(const Prober& prober, const Scene& scene, const Whole& whole) {
-  Probe found{whole.uses};
+  Probe found{prober.uses()};
   if (whole.by.solver != kOther.solver) try {
     found.uncertainty = prober.distances(whole.skin, prober.skin(scene.effects, kOther)).first;
   } catch (const Error&) {
@@ -95,6 +95,10 @@ Probe probe(const Prober& prober, const Scene& scene, const Whole& whole) {
   for (std::size_t i = 0; i < found.effects.size(); ++i) {
     EffectUse& use = found.effects[i];
     if (!use.isActive) continue;
+    if (use.movesInTime) {
+      use.notProbed = "it tells the way in time, and leaves the rest where it is";
+      continue;
+    }
     auto others = scene.effects;
     others.erase(others.begin() + std::ptrdiff_t(i));
     try {
@@ -113,7 +117,7 @@ Probe probeEffects(const Scene& scene, const Plan& plan, Registry& registry, Hos
   try {
     return probe(prober, scene, solveWhole(prober, scene, registry));
   } catch (const Error& error) {
-    Probe none{compile(scene, registry).effects};
+    Probe none{prober.uses()};
     for (EffectUse& use : none.effects) use.notProbed = firstLine(error);
     return none;
   }

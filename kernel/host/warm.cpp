@@ -10,6 +10,9 @@ namespace {
 // Refuses the first effect that cannot give what the solver uses.
 void checkNeeds(const std::string& solver, const Needs& needs, const std::vector<EffectUse>& effects) {
   for (const EffectUse& use : effects) {
+    if (needs.rest && use.movesInTime)
+      throw Error(fmt::format("{} finds the wall at rest, and {} asks for its motion in time", solver, use.id))
+          .of("scene").advise(fmt::format("Take solver.implicit, solver.verlet or solver.semi_implicit, or leave {} out of the scene", use.id));
     const char* missing = needs.hessian && !use.hasHessian ? "a Hessian" : needs.springs && !use.hasSprings ? "springs alone" : nullptr;
     if (!missing) continue;
     throw Error(fmt::format("{} works only with effects that offer {}, and {} does not", solver, missing, use.id))
@@ -24,8 +27,8 @@ WarmSolve::WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::un
   for (const EffectUse& use : compiled_.effects)
     if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
   checkNeeds(id, solver_->needs(), compiled_.effects);
+  if (scene_->still > 0 && !mayLeaveOut()) host.info(fmt::format("all points are computed, as {}", compiled_.isLoadedInCt ? "the weight moves them all" : "what moves in time may spread"));
   if (!compiled_.isLoadedInCt) return;
-  if (scene_->still > 0) host.info("all points are computed, as the weight moves them all");
   if (const auto found = findRestShape(*scene_, *solver_, registry, host)) {
     rest_ = found;
     compiled_ = compile(*rest_, registry);
@@ -51,11 +54,13 @@ void WarmSolve::startFrom(const Motion& motion) {
     if (!isFinite(start_[i])) throw Error("a position of the motion to start from is not a finite number").of("start").at(system.nodeName(i));
 }
 
+bool WarmSolve::mayLeaveOut() const { return !compiled_.isLoadedInCt && !compiled_.system->dynamics.isAskedFor(); }
+
 void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
 
 void WarmSolve::prepare(Host& host) {
   if (session_ || region_) return;
-  if (scene_->still > 0 && !compiled_.isLoadedInCt) region_ = std::make_unique<RegionSolve>(*rest_, *compiled_.system, scene_->still, *solver_, registry_);
+  if (scene_->still > 0 && mayLeaveOut()) region_ = std::make_unique<RegionSolve>(*rest_, *compiled_.system, scene_->still, *solver_, registry_);
   else session_ = solver_->prepare(*compiled_.system, host);
 }
 
@@ -90,6 +95,7 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   motion->energy = solution.energy;
   motion->energyGrowth = solution.energyGrowth;
   motion->energyHistory = std::move(solution.energyHistory);
+  motion->moments = std::move(solution.moments);
   for (int l = 0; l + 1 < system.layers; ++l) {
     int first = -1;
     motion->invertedPrisms += countInvertedPrisms(scene_->rows, scene_->columns, motion->layer(l), motion->layer(l + 1), first);

@@ -28,6 +28,7 @@ class WarmSolve {
   std::shared_ptr<const Motion> solve(const Plan& plan, Host& host);
 
  private:
+  bool mayLeaveOut() const;   // whether points may stand still
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const Scene> rest_;   // without the loads that the CT shows it under; the scene itself if there are none
   std::unique_ptr<Solver> solver_;

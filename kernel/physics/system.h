@@ -80,6 +80,15 @@ class Term {
   virtual void forEachSpring(const std::function<void(const Spring&)>& /*visit*/) const {}
 };
 
+/// How a wall is to be followed in time, from rest: a = F / m - c v of every free node.
+struct Dynamics {
+  double duration = 0;   ///< s; 0: nothing is asked for but the shape at rest
+  double lifting = 0;    ///< s from the beginning that the driven nodes take, starting and stopping softly
+  double interval = 0;   ///< s between the moments that are kept
+  double damping = 0;    ///< c, 1/s
+  bool isAskedFor() const { return duration > 0; }
+};
+
 /// Nodes [0, freeNodes) are unknown, the rest follow the plan.
 struct System {
   int rows = 0, columns = 0;               ///< of each layer
@@ -88,6 +97,7 @@ struct System {
   NodeVectors rest;                        ///< all nodes, mm
   std::vector<double> mass;                ///< of the free nodes, kg
   std::vector<std::unique_ptr<Term>> terms;
+  Dynamics dynamics;
 
   /// Points of one layer; point (r, c) is r * columns + c.
   std::size_t points() const { return std::size_t(rows) * columns; }

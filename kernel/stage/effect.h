@@ -29,6 +29,9 @@ struct Contribution {
   /// Driven nodes of its own, as long as no plan is known; they are numbered from system.rest.size() on.
   std::vector<Vec3> guides;
   Steering steering;
+  /// What it asks for of a motion in time; without a duration nothing moves in time. The longest times and the sum of the dampings of
+  /// all effects count.
+  Dynamics dynamics;
   std::string emptyBecause;             ///< why it adds nothing to this scene; it then drops out
   std::vector<std::string> notes;       ///< what was computed on the way, such as a calibrated spring constant
 };

@@ -20,6 +20,7 @@ struct Solution {
   std::vector<double> energyHistory;   ///< N mm
   double energyGrowth = 0;             ///< largest rise of what the method lets only fall (a minimiser its objective, an integrator
                                        ///< potential and kinetic energy) with the driven nodes at rest, over its value before
+  std::vector<Moment> moments;         ///< of a scene that asks for them (System::dynamics), from rest to the end
 };
 
 /// A prepared system. solve can be called again and again.
@@ -32,10 +33,11 @@ class Session {
   virtual Solution solve(const Drive& drive, const NodeVectors* start, Host& host) = 0;
 };
 
-/// What a solver uses of every term beside energy and gradient, which all terms have.
+/// What a solver uses of every term beside energy and gradient, which all terms have; and what it cannot do without.
 struct Needs {
   bool hessian = false;   ///< Term::makeHessian
   bool springs = false;   ///< Term::forEachSpring: the term is nothing but springs
+  bool rest = true;       ///< that rest is all that is asked for: it does not follow motions in time (System::dynamics)
 };
 
 class Solver {

@@ -15,6 +15,15 @@ enum class SolveStatus {
 };
 const char* statusName(SolveStatus status);
 
+/// The wall at one time on its way.
+struct Moment {
+  double time = 0;             ///< s from the beginning
+  double energy = 0;           ///< potential, N mm
+  double kineticEnergy = 0;    ///< N mm
+  double fastest = 0;          ///< the largest speed of a point, mm/s
+  std::vector<Vec3> outer;     ///< the skin, as in Scene
+};
+
 struct Motion : Value {
   static constexpr const char* kName = "Motion";
   std::shared_ptr<const Scene> scene;
@@ -34,12 +43,14 @@ struct Motion : Value {
   double energyGrowth = 0;                  ///< largest rise in an accepted step with the bar at rest, over the energy before it
   int invertedPrisms = 0;                   ///< cells between two layers that turned inside out
   int invertedAt = -1;                      ///< index of the first such point in its layer
+  std::vector<Moment> moments;              ///< how it came there, if the scene asks for its motion in time; `outer` is the end of it
 
   const char* kind() const override { return kName; }
+  /// Among them "overshoot": how much farther from its place at rest a point of the skin came on its way in time than in the end.
   std::vector<Fact> facts() const override;
   /// As Scene::layer.
   const std::vector<Vec3>& layer(int l) const { return l == 0 ? outer : l == int(between.size()) + 1 ? inner : between[l - 1]; }
-  std::size_t bytes() const override { return ((2 + between.size()) * outer.size() + anchors.size()) * sizeof(Vec3); }
+  std::size_t bytes() const override { return ((2 + between.size() + moments.size()) * outer.size() + anchors.size()) * sizeof(Vec3); }
   /// `before` and `after`: the skin as meshes; `after` has the field "displacement". `copied`: the skin if it copied the bone.
   std::vector<std::pair<std::string, std::shared_ptr<const Value>>> parts() const override;
 };

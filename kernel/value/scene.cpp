@@ -50,8 +50,13 @@ const char* statusName(SolveStatus status) {
 }
 
 std::vector<Fact> Motion::facts() const {
-  double greatest = 0;
-  for (std::size_t i = 0; i < outer.size(); ++i) greatest = std::max(greatest, distance(outer[i], scene->outer[i]));
+  double greatest = 0, fastest = 0, overshoot = 0;
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    const double end = distance(outer[i], scene->outer[i]);
+    greatest = std::max(greatest, end);
+    for (const Moment& m : moments) overshoot = std::max(overshoot, distance(m.outer[i], scene->outer[i]) - end);
+  }
+  for (const Moment& m : moments) fastest = std::max(fastest, m.fastest);
   return {{"status", statusName(status), ""},
           {"message", message, ""},
           {"iterations", double(iterations), ""},
@@ -63,7 +68,10 @@ std::vector<Fact> Motion::facts() const {
           {"inverted_prisms", double(invertedPrisms), ""},
           {"greatest_skin_displacement", greatest, "mm"},
           {"lift", lift, "mm"},
-          {"bar_force", barForce, "N"}};
+          {"bar_force", barForce, "N"},
+          {"duration", moments.empty() ? 0 : moments.back().time, "s"},
+          {"fastest", fastest, "mm/s"},
+          {"overshoot", overshoot, "mm"}};
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Motion::parts() const {

@@ -41,6 +41,26 @@ TEST(SwapScript, BringsEverySolverToRest) {
   EXPECT_EQ(count(swap.text, "converged"), 9u) << swap.text;
 }
 
+TEST(SwingScript, TellsTheWayInTimeAndWritesIt) {
+  const fs::path out = fs::temp_directory_path() / "pectora_test_swing";
+  fs::remove_all(out);
+  const Ended swing = run("scripts/swing.lua", "matrix=128 lift=15 spacing=16 duration=0.1 lifting=0.05 out=" + out.string());
+  EXPECT_EQ(swing.code, 0) << swing.text;
+  EXPECT_EQ(count(swing.text, " converged"), 11u) << swing.text;
+  // A row for each of the moments 0, 0.02 ... 0.1 s, and the skin at each.
+  std::ostringstream table, series;
+  table << std::ifstream(out / "course.csv").rdbuf();
+  series << std::ifstream(out / "course.pvd").rdbuf();
+  EXPECT_EQ(count(table.str(), "\n"), 7u) << table.str();
+  EXPECT_EQ(count(table.str(), "\n0.1,"), 1u) << table.str();
+  EXPECT_EQ(count(series.str(), "<DataSet "), 6u);
+  for (const char* file : {"course/skin_0000.vtp", "course/skin_0005.vtp"}) {
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+    EXPECT_EQ(count(series.str(), file), 1u);
+  }
+  fs::remove_all(out);
+}
+
 TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
   const fs::path out = fs::temp_directory_path() / "pectora_test_accuracy";
   fs::remove_all(out);

@@ -167,6 +167,16 @@ const std::vector<Entry>& table() {
          Motion& start = d.wall.startAtRest();
          for (Vec3& p : start.inner) p.y += 30;
        }},
+      {"bar_at_once", Must::settle, "the bar is there at once, and the wall swings undamped for a twentieth of a second", 5,
+       [](Draft& d) {
+         d.hard.isInTime = true;
+         d.wall.callEffect("effect.inertia", {{"duration", 0.05}, {"lifting", 0.0}, {"damping", 0.0}, {"interval", 0.005}});
+       }},
+      {"swings_through_itself", Must::tell, "the bar is thrown through the wall in a hundredth of a second, and the wall after it", 60,
+       [](Draft& d) {
+         d.hard.isInTime = true;
+         d.wall.callEffect("effect.inertia", {{"duration", 0.1}, {"lifting", 0.01}, {"damping", 5.0}, {"interval", 0.005}});
+       }},
       {"all_effects", Must::tell, "every effect at once on a lift of 40 mm", 40,
        [](Draft& d) {
          d.hard.isSpringsAlone = false;
@@ -187,7 +197,7 @@ const char* mustName(Must must) {
 
 std::vector<Fact> HardCase::facts() const {
   return {{"name", name, ""}, {"next", next, ""}, {"text", text, ""}, {"must", mustName(must), ""},
-          {"springs_alone", isSpringsAlone ? 1.0 : 0.0, ""}, {"time_step", timeStep, "s"}, {"load_step", loadStep, "mm"}, {"extent", extent, "mm"}};
+          {"springs_alone", isSpringsAlone ? 1.0 : 0.0, ""}, {"in_time", isInTime ? 1.0 : 0.0, ""}, {"time_step", timeStep, "s"}, {"load_step", loadStep, "mm"}, {"extent", extent, "mm"}};
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> HardCase::parts() const {

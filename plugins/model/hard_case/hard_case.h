@@ -22,6 +22,7 @@ struct HardCase : Value {
   std::string text;            ///< what is hard about it, in one sentence
   Must must = Must::tell;
   bool isSpringsAlone = true;  ///< false: solvers for springs alone must refuse it
+  bool isInTime = false;       ///< true: solvers that find the wall at rest alone must refuse it
   double timeStep = 0;         ///< s, which explicit solvers must refuse if it is above 0; 0: the solver's own
   double loadStep = 0;         ///< mm, for solvers that step along the movement; 0: the solver's own
   double extent = 0;           ///< greatest length of the wall, mm

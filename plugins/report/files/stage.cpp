@@ -1,4 +1,5 @@
 #include "plugins/report/files/cage_picture.h"
+#include "plugins/report/files/course.h"
 #include "plugins/report/files/metrics_table.h"
 #include "plugins/report/files/slice_picture.h"
 #include "plugins/report/files/surface_picture.h"
@@ -54,6 +55,12 @@ class Files final : public Stage {
     report_->files.push_back(name);
     return path_ + "/" + name;
   }
+  // What an earlier run left in greater number would pass for this one's.
+  void removeOld(const std::string& beginning, const char* extension) const {
+    const std::filesystem::path begin = path_ + "/" + beginning;
+    for (const auto& entry : std::filesystem::directory_iterator(begin.parent_path()))
+      if (entry.path().filename().string().starts_with(begin.filename().string()) && entry.path().extension() == extension) std::filesystem::remove(entry.path());
+  }
   static FileNote note(const Inputs& inputs, const char* port) { return {inputs.handles(port).front().record->key}; }
 
   void writePictures(const Inputs& inputs, Host& host) {
@@ -63,9 +70,7 @@ class Files final : public Stage {
     const auto cage = plan ? plan->cage : inputs.get<RibCage>("cage");
     if (ct && anatomy && slices_ > 0) {
       makeFolder(path_ + "/slices");
-      // Pictures of an earlier run with other slices would pass for this one's.
-      for (const auto& entry : std::filesystem::directory_iterator(path_ + "/slices"))
-        if (entry.path().filename().string().starts_with("slice_") && entry.path().extension() == ".png") std::filesystem::remove(entry.path());
+      removeOld("slices/slice_", ".png");
       const int total = ct->grid.size[2], count = std::min(slices_, total);
       for (int i = 0; i < count; ++i) {
         host.checkCancel();
@@ -88,9 +93,23 @@ class Files final : public Stage {
       writeFile(file("scene.vtp"), vtpBytes(after, note(inputs, "motion")));
       surfacePicture(before, "", 0, "Before", {}).write(file("before.png"));
       surfacePicture(after, "", 0, "Predicted", {}).write(file("after.png"));
+      if (!motion->moments.empty()) writeCourse(*motion, note(inputs, "motion"));
     }
     if (const auto plan = inputs.get<Plan>("plan"))
       writeFile(file("bar.ply"), plyBytes(barMesh(plan->bars), note(inputs, "plan")));
+  }
+
+  // The way in time: a table, and the skin at every moment.
+  void writeCourse(const Motion& motion, const FileNote& note) {
+    writeFile(file("course.csv"), courseCsv(motion));
+    makeFolder(path_ + "/course");
+    removeOld("course/skin_", ".vtp");
+    std::vector<std::string> names;
+    for (const Moment& moment : motion.moments) {
+      names.push_back(fmt::format("course/skin_{:04}.vtp", names.size()));
+      writeFile(file(names.back()), vtpBytes(skinAt(motion, moment), note));
+    }
+    writeFile(file("course.pvd"), coursePvd(motion, names));
   }
 
   void writeComparisons(const Inputs& inputs) {

@@ -1,5 +1,6 @@
 #include "plugins/solver/common/relaxation.h"
 
+#include "plugins/solver/common/course.h"
 #include "plugins/solver/common/movement.h"
 #include "plugins/solver/common/node_algebra.h"
 
@@ -120,6 +121,41 @@ class Relaxation final : public Session {
   MakeScheme make_;
 };
 
+// An explicit scheme on its way in time.
+class ExplicitTraveller final : public Traveller {
+ public:
+  ExplicitTraveller(std::unique_ptr<ExplicitScheme> scheme, double step, double damping) : scheme_(std::move(scheme)), step_(step), damping_(damping) {}
+  Outcome step(const Guide& guide) override {
+    scheme_->step(damping_);
+    guide(double(++steps_) * step_, scheme_->positions());
+    return Outcome::converged;
+  }
+  NodeVectors& positions() override { return scheme_->positions(); }
+  NodeVectors velocity(const NodeVectors& gradient) const override { return scheme_->velocity(gradient, damping_); }
+  int evaluations() const override { return scheme_->evaluations(); }
+
+ private:
+  std::unique_ptr<ExplicitScheme> scheme_;
+  double step_, damping_;
+  std::int64_t steps_ = 0;
+};
+
+class ExplicitCourse final : public Session {
+ public:
+  ExplicitCourse(const System& system, CourseSettings settings, MakeScheme make) : system_(system), settings_(settings), make_(std::move(make)) {}
+
+  Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
+    return follow(system_, drive, start, settings_, [&](const NodeVectors& from, double step) {
+      return std::make_unique<ExplicitTraveller>(make_(system_, system_.mass, from, step), step, system_.dynamics.damping);
+    }, host);
+  }
+
+ private:
+  const System& system_;
+  CourseSettings settings_;
+  MakeScheme make_;
+};
+
 }  // namespace
 
 double frequencyBoundSquared(const System& system, const std::vector<double>& mass) {
@@ -161,10 +197,20 @@ void ExplicitScheme::step(double damping) {
   started_ = true;
 }
 
+NodeVectors ExplicitScheme::velocity(const NodeVectors& gradient, double damping) const {
+  NodeVectors velocity(system_.rest.size());
+  if (!started_) return velocity;
+  for (std::size_t i = 0; i < system_.freeNodes; ++i) {
+    const Vec3 v = (now_[i] - before_[i]) / step_;
+    velocity.set(i, v + (gradient[i] * (-kMmPerM / mass_[i]) - v * damping) * (step_ / 2));
+  }
+  return velocity;
+}
+
 void RelaxationSettings::describe(Visitor& v) {
   v.real("tolerance", tolerance, "", {1e-12, 0.5}, {1e-6, 1e-2}, "Stop when the largest force on a free point is this part of the largest spring force");
   v.integer("max_iterations", maxIterations, "", {1, 1e8}, {1000, 50000}, "Stop unconverged after so many steps");
-  v.integer("ramp", ramp, "", {0, 1e7}, {0, 1000}, "Steps over which the bar is brought to its place");
+  v.integer("ramp", ramp, "", {0, 1e7}, {0, 1000}, "Steps over which the bar is brought to its place; of a scene in time (effect.inertia) its own time counts, and so its damping and masses");
   v.real("time_step", timeStep, "s", {0, 10}, {0, 0.01}, "Step; refused beyond the stability limit; 0: nine tenths of it");
   v.real("damping", damping, "1/s", {0, 1e9}, {0, 1000}, "Velocity damping c in a = F/m - c v; 0: critical for the slowest mode seen");
   v.choice("mass", mass, {"scaled", "tissue"}, "Masses of the points: in proportion to their stiffness, which is fastest and gives the same end, or the tissue's own");
@@ -172,7 +218,8 @@ void RelaxationSettings::describe(Visitor& v) {
 
 std::unique_ptr<Session> makeRelaxation(const System& system, const RelaxationSettings& settings, const std::string& scheme, MakeScheme make) {
   std::vector<double> mass = system.mass;
-  if (settings.mass == "scaled") {
+  const bool isInTime = system.dynamics.isAskedFor();
+  if (settings.mass == "scaled" && !isInTime) {
     // The same frequency bound at every node, with the mean of the tissue's masses.
     const std::vector<double> stiffness = system.stiffnessBound();
     double stiffnessSum = 0, massSum = 0;
@@ -181,11 +228,12 @@ std::unique_ptr<Session> makeRelaxation(const System& system, const RelaxationSe
   }
   const double bound = std::sqrt(frequencyBoundSquared(system, mass));
   // With automatic damping the limit is that of the greatest damping it may choose.
-  const double limit = stableStep(bound, settings.damping > 0 ? settings.damping : 0.5 * bound);
+  const double limit = stableStep(bound, isInTime ? system.dynamics.damping : settings.damping > 0 ? settings.damping : 0.5 * bound);
   if (settings.timeStep > limit)
     throw Error("the step is beyond the stability limit of " + scheme)
         .of("time_step").given(fmt::format("{:g} s", settings.timeStep)).allowed(fmt::format("up to {:.6g} s for this scene", limit)).advise("Leave it 0 for a safe step");
   const double step = settings.timeStep > 0 ? settings.timeStep : 0.9 * limit;
+  if (isInTime) return std::make_unique<ExplicitCourse>(system, CourseSettings{step, settings.timeStep == 0, settings.maxIterations}, std::move(make));
   return std::make_unique<Relaxation>(system, settings, std::move(mass), step, bound, std::move(make));
 }
 

@@ -41,6 +41,9 @@ class ExplicitScheme {
   /// not move. Valid from the second step on.
   double rayleighQuotient() const { return rayleigh_; }
   int evaluations() const { return evaluations_; }
+  /// Velocity at positions(), mm/s, to the second order: that of the last step and half of what the acceleration there adds.
+  /// `gradient` is that of the energy at positions().
+  NodeVectors velocity(const NodeVectors& gradient, double damping) const;
 
  protected:
   /// Moves one node at x, which was at `before` one step ago and has the acceleration `free` (mm/s^2) without damping.
@@ -65,7 +68,8 @@ struct RelaxationSettings {
 };
 
 using MakeScheme = std::function<std::unique_ptr<ExplicitScheme>(const System&, std::vector<double> mass, NodeVectors start, double step)>;
-/// A session that steps until rest. `scheme` names it in messages. Throws Error for a step beyond its stability limit.
+/// A session that steps until rest, or for a scene that asks for it through its motion in time. `scheme` names it in messages. Throws
+/// Error for a step beyond its stability limit.
 std::unique_ptr<Session> makeRelaxation(const System& system, const RelaxationSettings& settings, const std::string& scheme, MakeScheme make);
 
 }  // namespace pectora

@@ -6,6 +6,7 @@ using namespace pectora;
 class SemiImplicitEulerSolver final : public Solver {
  public:
   void describe(Visitor& v) override { settings_.describe(v); }
+  Needs needs() const override { return {.rest = false}; }
   std::unique_ptr<Session> prepare(const System& system, Host&) override {
     return makeRelaxation(system, settings_, "semi-implicit Euler", [](const System& s, std::vector<double> mass, NodeVectors start, double step) {
       return std::make_unique<SemiImplicitEuler>(s, std::move(mass), std::move(start), step);

@@ -6,6 +6,7 @@ using namespace pectora;
 class VerletSolver final : public Solver {
  public:
   void describe(Visitor& v) override { settings_.describe(v); }
+  Needs needs() const override { return {.rest = false}; }
   std::unique_ptr<Session> prepare(const System& system, Host&) override {
     return makeRelaxation(system, settings_, "the Verlet scheme", [](const System& s, std::vector<double> mass, NodeVectors start, double step) {
       return std::make_unique<Verlet>(s, std::move(mass), std::move(start), step);
