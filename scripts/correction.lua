@@ -15,6 +15,7 @@ local p = parameters{
   { name = "model", default = "two_layer", choices = { "two_layer", "volume_mesh" }, doc = "The wall as two layers of points joined by springs, or as a solid of fat, muscle and bone" },
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
+  { name = "attachment", default = "carried", choices = { "carried", "struts" }, doc = "How the pleura hangs on the bones: drawn to where they carry it, or by the paper's springs, which turn freely" },
   { name = "contact", default = true, doc = "Ribs, cartilages and sternum are in the pleura's way; without it solvers for springs alone can be taken" },
   { name = "effects", default = 0, unit = "mm", range = { 0, 100 }, doc = "Of all installed effects run those that change the skin by about so much or more, which rough solves tell; 0: those of this script" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
@@ -39,7 +40,7 @@ end
 
 -- Model: the wall as springs or as a solid, and the effects that this scene calls for.
 local skin = { compression = p.skin_compression }
-local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.attachment{} }   -- within the skin; pleura to rib cage
+local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), effect.attachment{ hold = p.attachment } }   -- within the skin; pleura to rib cage
 if p.contact then effects[#effects + 1] = effect.rib_contact{} end
 local isLattice = choice.model == "two_layer"
 for _, e in ipairs(isLattice and { effect.direct{}, effect.cross{} } or { effect.tissue{} }) do effects[#effects + 1] = e end   -- between skin and pleura

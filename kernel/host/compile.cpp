@@ -76,9 +76,10 @@ std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, cons
     for (const auto& [steering, guides] : compiled.steering)
       if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
   }
+  const std::vector<Vec3> anchors = positions;
   for (const auto& [steering, guides] : compiled.steering)
     if (guides > 0)
-      for (const Vec3& guide : steering.guides(plan, reached * t)) positions.push_back(guide);
+      for (const Vec3& guide : steering.guides(plan, reached * t, anchors)) positions.push_back(guide);
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (!isFinite(positions[i]))
       throw Error("the plan moves an anchor to a place that is not a finite number").of("plan").at(fmt::format("anchor {}", i));

@@ -14,8 +14,8 @@ struct Steering {
   std::function<double(const Plan&)> barResistance, chestResistance;
   /// How far an anchor goes beside its way in the plan, mm, in equal parts from the beginning to the end.
   std::function<Vec3(const Plan&, const Anchor&)> displacement;
-  /// Where the effect's guides lie after part t of the plan.
-  std::function<std::vector<Vec3>(const Plan&, double t)> guides;
+  /// Where the effect's guides lie after part t of the plan; `anchors`: where the scene's then are, with what all effects add to their way.
+  std::function<std::vector<Vec3>(const Plan&, double t, const std::vector<Vec3>& anchors)> guides;
 };
 
 /// What an effect adds to the problem. Springs are data, and all effects' stencils are fused into one term.

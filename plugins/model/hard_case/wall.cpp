@@ -40,7 +40,8 @@ void HardWall::callEffect(const std::string& id, Settings settings) {
 void HardWall::callSprings(double skin, double wall, double attachment) {
   for (const char* id : {"effect.stretch", "effect.shear", "effect.bend"}) callEffect(id, {{"youngs_modulus", skin}});
   for (const char* id : {"effect.direct", "effect.cross"}) callEffect(id, {{"youngs_modulus", wall}});
-  callEffect("effect.attachment", {{"youngs_modulus", attachment}});
+  // The paper's struts can be pushed through themselves.
+  callEffect("effect.attachment", {{"youngs_modulus", attachment}, {"hold", std::string("struts")}});
 }
 
 Motion& HardWall::startAtRest() {
