@@ -17,7 +17,7 @@ struct Rough {
   double tolerance;
   int iterations;
 };
-constexpr Rough kFast{"solver.newton", 1e-4, 500}, kOther{"solver.verlet", 1e-3, 4000};
+constexpr Rough kFast{"solver.newton", 1e-4, 500}, kOther{"solver.verlet", 1e-4, 20000};
 constexpr double kMoved = 3;   // mm
 
 class Prober {
