@@ -34,9 +34,12 @@ App::App(Target& target, Registry& registry, std::function<void()> wake) : targe
   context_.scale = target.scale();
 }
 
-App::~App() { context_.layout.save(); }
+void App::keepLayout() {
+  std::tie(context_.layout.width, context_.layout.height) = target_.size();
+  context_.layout.save();
+}
 
-bool App::wantsFrame() const { return settling_ > 0 || isCoarse_; }
+bool App::wantsFrame() const { return settling_ > 0 || isCoarse_ || context_.turntable; }
 
 void App::frame() {
   // What happened since the last one.
@@ -99,9 +102,12 @@ void App::frame() {
   target_.end();
 
   if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
-  if (const std::string folder = script_.takeTurntable(); !folder.empty()) {
-    scene_.turntable(context_, folder, 36, int(900 * s), int(900 * s));
-    context_.worker().log(LogLine::Kind::print, "The turntable is in " + folder);
+  if (auto& turn = context_.turntable) {
+    scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, int(900 * s), int(900 * s));
+    if (turn->drawn == Turntable::kPictures) {
+      context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
+      turn.reset();
+    }
   }
 }
 

@@ -26,6 +26,12 @@ void patientControls(Context& context) {
     if (!chosen.empty()) context.open(chosen);
   }
 
+  // How it is read: which of its series, and the like.
+  if (context.choices.source == Source::dicom) {
+    heading("The CT");
+    parameterControls(context, context.choices.loader, "ct", {"files"});
+  }
+
   ImGui::Dummy({0, 4 * context.scale});
   ImGui::Separator();
   heading("Or make a phantom patient");

@@ -39,6 +39,8 @@ class Target {
   std::vector<std::string> dropped_;
 };
 
+/// Windows are no smaller, in units of the layout.
+inline constexpr int kLeastWidth = 960, kLeastHeight = 600;
 /// Throws Error without a display or OpenGL 3.3. `scale` 0: as the display says.
 std::unique_ptr<Target> makeWindow(int width, int height, float scale);
 /// EGL without a surface: needs no display. Throws Error if there is no such EGL.

@@ -20,8 +20,10 @@ Step firstDifference(const Choices& a, const Choices& b) {
   if (a.model != b.model || a.effects != b.effects) return Step::scene;
   if (a.planner != b.planner) return Step::plan;
   if (a.solver != b.solver) return Step::motion;
-  if (a.scanPath != b.scanPath) return Step::scan;
-  if (!same(a.ctLandmarks, b.ctLandmarks) || !same(a.scanLandmarks, b.scanLandmarks) || a.registration != b.registration || a.usesIcp != b.usesIcp)
+  if (a.scan != b.scan) return Step::scan;
+  // The comparison begins where the landmarks brought the scan, so both are made together.
+  if (!same(a.ctLandmarks, b.ctLandmarks) || !same(a.scanLandmarks, b.scanLandmarks) || a.registration != b.registration || a.usesIcp != b.usesIcp ||
+      a.icp != b.icp || a.comparer != b.comparer)
     return Step::registration;
   return Step::nothing;
 }

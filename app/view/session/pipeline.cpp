@@ -105,7 +105,7 @@ WarmSolve& Pipeline::warm() {
 
 void Pipeline::solveLive() {
   present_ = Step::motion;
-  LiveHost host(done_.solver.id, messages_, cancel_);
+  FollowingHost host(done_.solver.id, messages_, cancel_);
   try {
     WarmSolve& solve = warm();
     if (!live_.isWarm()) {
@@ -154,8 +154,8 @@ void Pipeline::solveFromRest() {
 }
 
 void Pipeline::preview(const NodeVectors& positions) {
-  // A display shows no more than about thirty states a second.
-  if (!showsWay_ || msSince(shown_) < 30 || !results_.sceneValue()) return;
+  // A display shows no more than about thirty states a second; the last one before the hand moves on is where it goes on from.
+  if (!showsWay_ || (msSince(shown_) < 30 && !cancel_) || !results_.sceneValue()) return;
   shown_ = Clock::now();
   const std::size_t count = std::size_t(results_.sceneValue()->points());
   lastSeen_ = positions;

@@ -37,6 +37,15 @@ struct Results {
   const Plan* planValue() const { return as<Plan>(plan); }
   const Motion* motionValue() const { return as<Motion>(motion); }
   const Comparison* comparisonValue() const { return as<Comparison>(comparison); }
+  /// How far the scan lies outside each point of the predicted skin that was compared, mm, NaN where it has no counterpart; null if
+  /// nothing was compared, or with a cloud.
+  const std::vector<double>* scanDistances() const {
+    const Comparison* c = comparisonValue();
+    if (c && c->reference)
+      for (const PointField& field : c->reference->fields)
+        if (field.name == "distance") return &field.values;
+    return nullptr;
+  }
 };
 
 /// A spring at a picked point.
