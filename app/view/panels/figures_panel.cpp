@@ -105,7 +105,10 @@ void figuresPanel(Context& context) {
     if (motion->invertedPrisms > 0) row("Cells inside out", std::to_string(motion->invertedPrisms), &kBad);
     if (r.sceneValue()) row("Skin points", std::to_string(r.sceneValue()->points()));
     if (r.motion.record) row("Time from rest", fmt::format("{:.0f} ms", 1000 * r.motion.record->seconds));
-    if (r.liveMs > 0) row("Time while moving", fmt::format("{:.0f} ms", r.liveMs));
+    if (r.liveMs > 0) {
+      row("Time while moving", fmt::format("{:.0f} ms", r.liveMs));
+      hint(fmt::format("From the change to the new skin; {:.1f} ms of it are the solver's", r.solveMs));
+    }
     if (r.settled >= 0) {
       row("Live against rest", fmt::format("{:.2f} mm", r.settled), r.settled > 0.5 ? &kWarm : nullptr);
       hint("How far the skin that was shown while you moved something lay, at most, from the one that a script finds from rest. "

@@ -44,7 +44,9 @@ void patientControls(Context& context) {
     const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
     if (isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);
   }
-  if (ImGui::TreeNode("More about the phantom")) {
+  const bool isOpen = ImGui::TreeNode("More about the phantom");
+  mark("phantom.open");
+  if (isOpen) {
     for (const Parameter& p : context.catalog.parameters("loader.phantom")) {
       const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
       if (!isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);

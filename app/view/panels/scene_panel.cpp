@@ -40,11 +40,10 @@ void ScenePanel::toolbar(Context& context) {
   static constexpr const char* kLooks[] = {"Skin", "Glass skin", "Displacement", "Distance", "No skin"};
   if (ImGui::BeginCombo("##skin", kLooks[int(o.skin)])) {
     for (int i = 0; i < int(std::size(kLooks)); ++i) {
-      // A cloud of points has no surface that the skin could be far from.
-      const bool isThere = SkinLook(i) != SkinLook::distance || context.results->scanDistances();
+      const bool isThere = SkinLook(i) != SkinLook::distance || context.results->scanDistances;
       if (ImGui::Selectable(kLooks[i], int(o.skin) == i, isThere ? 0 : ImGuiSelectableFlags_Disabled)) o.skin = SkinLook(i);
       mark(std::string("skin.") + kLooks[i]);
-      if (SkinLook(i) == SkinLook::distance) hint(isThere ? "How far the scan lies outside the predicted skin" : "Needs a scan with triangles, registered");
+      if (SkinLook(i) == SkinLook::distance) hint(isThere ? "How far the scan lies outside the predicted skin" : "Needs a scan that is registered");
     }
     ImGui::EndCombo();
   } else {
@@ -205,7 +204,7 @@ void ScenePanel::overlays(Context& context) {
       const Vec3 d = parts_.displacement(point);
       std::string text = scene ? fmt::format("row {}, column {}", point / scene->columns, point % scene->columns) : fmt::format("point {}", point);
       text += fmt::format("\nmoved {:.1f} mm: {:.1f} forward, {:+.1f} up", norm(d), -d.y, d.z);
-      const auto* distances = context.results->scanDistances();
+      const auto& distances = context.results->scanDistances;
       if (distances && std::size_t(point) < distances->size() && std::isfinite((*distances)[point]) && !context.results->isLive)
         text += fmt::format("\nthe scan lies {:.1f} mm {} of it", std::abs((*distances)[point]), (*distances)[point] < 0 ? "inside" : "outside");
       if (context.picked->isKnown && !context.picked->springs.empty()) {
@@ -279,7 +278,7 @@ void ScenePanel::turntable(const Context& context, const std::string& folder, in
   parts_.update(context);
   std::filesystem::create_directories(folder);
   Frame frame;
-  frame.resize(width, height, 4);
+  frame.resize(width, height, true);
   renderer_.draw(frame, turning_, parts_.items(context), context.scene.clip, 3.2f);
   writePng(fmt::format("{}/turn_{:03}.png", folder, index), width, height, readPixels(frame.framebuffer(), width, height));
 }

@@ -30,7 +30,7 @@ void SceneParts::updateSkin(const Context& context) {
   const Results& r = *context.results;
   const Scene* scene = r.sceneValue();
   const float part = context.scene.part;
-  const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value, distances = context.scene.skin == SkinLook::distance ? r.comparison.value : nullptr;
+  const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value, distances = context.scene.skin == SkinLook::distance ? r.scanDistances : nullptr;
   if (skinOf_ == r.skin && sceneOf_ == made && skinPart_ == part && distancesOf_ == distances) return;
   // While the bar moves, the triangles stay.
   const bool isKnown = made && sceneOf_ == made;
@@ -55,7 +55,7 @@ void SceneParts::updateSkin(const Context& context) {
     }
     skin_.computeNormals();
     displacementLimit_ = roundLimit(skin_.values.data(), skin_.values.size());
-    if (const auto* known = r.scanDistances(); distances && known && known->size() == rest.size()) skin_.values = *known;
+    if (distances && r.scanDistances->size() == rest.size()) skin_.values = *r.scanDistances;
   }
   isKnown ? gpuSkin_.uploadPoints(skin_) : gpuSkin_.upload(skin_);
 }
@@ -167,7 +167,7 @@ void SceneParts::updatePicked(const Context& context) {
 
 const char* SceneParts::coloring(const Context& context) const {
   if (context.scene.hasScan && hasDistance_) return "Scan to predicted skin, mm";
-  if (context.scene.skin == SkinLook::distance && context.results->scanDistances())
+  if (context.scene.skin == SkinLook::distance && context.results->scanDistances)
     return context.results->isLive ? "Scan to skin before it moved, mm" : "Scan to predicted skin, mm";
   if (context.scene.skin == SkinLook::displacement && !gpuSkin_.isEmpty()) return "Displacement, mm";
   return nullptr;
@@ -199,7 +199,7 @@ std::vector<Item> SceneParts::items(const Context& context) const {
   Look skin{.color = kSkin};
   if (o.skin == SkinLook::glass) skin.isGlass = true;
   if (o.skin == SkinLook::displacement) skin.map = ColorMap::sequential, skin.low = 0, skin.high = o.isRangeFixed ? o.range : displacementLimit_;
-  if (o.skin == SkinLook::distance && context.results->scanDistances()) skin.map = ColorMap::diverging, skin.low = low(context), skin.high = high(context);
+  if (o.skin == SkinLook::distance && context.results->scanDistances) skin.map = ColorMap::diverging, skin.low = low(context), skin.high = high(context);
   if (o.skin != SkinLook::hidden) list.push_back({&gpuSkin_, skin});
   return list;
 }

@@ -14,6 +14,7 @@ namespace pectora::view {
 /// A current OpenGL 3.3 context with ImGui's backends. Only one at a time.
 class Target {
  public:
+  Target();
   virtual ~Target() = default;
   /// Width and height in pixels.
   virtual std::pair<int, int> size() const = 0;

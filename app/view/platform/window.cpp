@@ -66,7 +66,7 @@ class Window final : public Target {
   void end() override {
     const auto [width, height] = size();
     // Into a frame of our own, which can be read whenever a picture is wanted: what a display has shown cannot.
-    frame_->resize(width, height, 1);
+    frame_->resize(width, height, false);
     frame_->bind();
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);

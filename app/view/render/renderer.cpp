@@ -204,7 +204,7 @@ void Renderer::draw(const Frame& frame, const Camera& camera, const std::vector<
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
   const Vec3 eye = camera.eye(), toEye = normalized(eye - camera.target);
-  const View view{camera.matrix(), eye, normalized(toEye * 0.75 + camera.up() * 0.55 - camera.right() * 0.45), clip, pointSize};
+  const View view{camera.matrix(), eye, normalized(toEye * 0.75 + camera.up() * 0.55 - camera.right() * 0.45), clip, pointSize * float(frame.fineness())};
   for (const Item& item : items) {
     if (item.look.isGlass || item.surface->isEmpty()) continue;
     drawItem(view, item);

@@ -49,6 +49,7 @@ struct ClipPlane {
 class Renderer {
  public:
   Renderer();
+  /// `pointSize` in pixels of the picture.
   void draw(const Frame& frame, const Camera& camera, const std::vector<Item>& items, const ClipPlane& clip, float pointSize) const;
 
  private:

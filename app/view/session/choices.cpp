@@ -52,7 +52,9 @@ void assign(Settings& settings, const std::string& name, SettingValue value) {
       old = std::move(value);
       return;
     }
-  settings.emplace_back(name, std::move(value));
+  // By name, as a script's table has no order of its own.
+  const auto next = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.first > name; });
+  settings.emplace(next, name, std::move(value));
 }
 
 void reset(Settings& settings, const std::string& name) {

@@ -67,7 +67,7 @@ void Pipeline::runFrom(Step first, Step last) {
   clearFrom(Step::anatomy, results_.segmented);
   clearFrom(Step::anatomy, results_.anatomy);
   clearFrom(Step::cage, results_.cage);
-  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, live_.forget(), results_.comparison = results_.aligned = {};
+  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, live_.forget(), results_.comparison = results_.aligned = {}, results_.scanDistances = nullptr;
   for (Step step = first; step <= last && step < Step::nothing; step = next(step)) {
     present_ = step;
     try {
@@ -106,6 +106,7 @@ WarmSolve& Pipeline::warm() {
 void Pipeline::solveLive() {
   present_ = Step::motion;
   FollowingHost host(done_.solver.id, messages_, cancel_);
+  const Clock::time_point begun = Clock::now();
   try {
     WarmSolve& solve = warm();
     if (!live_.isWarm()) {
@@ -120,6 +121,7 @@ void Pipeline::solveLive() {
     results_.isLive = true;
     results_.settled = -1;
     results_.liveMs = msSince(since_);
+    results_.solveMs = msSince(begun);
     valid_ = Step::scan;
     show();
   } catch (const Cancelled&) {

@@ -1,5 +1,7 @@
 #include "app/view/session/steps.h"
 
+#include "app/view/session/scan_distances.h"
+
 #include <filesystem>
 
 namespace pectora::view {
@@ -65,6 +67,7 @@ void registerScan(const Choices& choices, Runner& runner, Results& r) {
 
 void compareSurfaces(const Choices& choices, Runner& runner, Results& r) {
   r.comparison = {};
+  r.scanDistances = nullptr;
   if (!r.aligned.value) return;
   // The skin before and after, as a script takes them out of the motion.
   Handle before = r.before, after = r.after;
@@ -80,6 +83,7 @@ void compareSurfaces(const Choices& choices, Runner& runner, Results& r) {
     r.aligned = outputs[0], r.byIcp = outputs[1];
   }
   r.comparison = runner.run(choices.comparer.id, choices.comparer.settings, {{r.aligned}, {after}, {before}, copied})[0];
+  if (const Mesh* skin = Results::as<Mesh>(after)) r.scanDistances = std::make_shared<const std::vector<double>>(scanDistances(*r.comparisonValue(), skin->points));
 }
 
 }  // namespace

@@ -173,7 +173,10 @@ TEST(Pipeline, OpensTheScriptThatTheWindowShowsAsWhatTheWindowShowed) {
   s.choices.effects.erase(s.choices.effects.begin() + 2);
   s.choices.effects.push_back({{"effect.volume"}, true});
   assign(s.choices.registration.settings, "method", std::string("similarity"));
-  s.choices.usesIcp = false;
+  assign(s.choices.icp.settings, "overlap", 0.9);
+  assign(s.choices.comparer.settings, "bin_width", 0.25);
+  assign(s.choices.segmenter.settings, "pleura_depth", 8.0);
+  assign(s.choices.splines.settings, "control_spacing", 22.0);
   // As if they had been placed by hand, a millimetre beside the phantom's own.
   const auto own = s.after(s.choices);
   s.choices.ctLandmarks.points = Results::as<Landmarks>(own->phantomCtLandmarks)->points;

@@ -90,11 +90,23 @@ TEST(Window, ProgramOpensOneAndEndsWhenItIsClosed) {
   const std::string home = ownHome("view_program_home");
   Xvfb display(1280, 800);
   if (!display.isThere()) GTEST_SKIP() << "Xvfb or xdotool is not installed (third_party/install.sh does)";
-  // Ctrl+Q goes to the window as soon as there is one.
-  const std::string command = "timeout 60 " PECTORA_PROGRAM " view > " + home + "/out.txt 2>&1 & program=$!; "
-                              "window=$(timeout 30 xdotool search --sync --onlyvisible --name '^Pectora$' | head -1); "
-                              "sleep 0.5; xdotool mousemove 640 400; xdotool key --clearmodifiers ctrl+q; wait $program";
+  // Ctrl+Q goes to the window when there is one, and again until it is closed.
+  const std::string command = "timeout 500 " PECTORA_PROGRAM " view > " + home + "/out.txt 2>&1 & program=$!; "
+                              "timeout 400 xdotool search --sync --onlyvisible --name '^Pectora$' mousemove 640 400 > /dev/null; "
+                              "while kill -0 $program 2> /dev/null; do xdotool key --clearmodifiers ctrl+q; sleep 0.5; done; wait $program";
   EXPECT_EQ(exitCode(command), 0) << readFile(home + "/out.txt");
+}
+
+TEST(Window, ProgramSaysWhatToDoWithoutOpenGl33) {
+  const std::string home = ownHome("view_old_home");
+  Xvfb display(1280, 800);
+  if (!display.isThere()) GTEST_SKIP() << "Xvfb or xdotool is not installed (third_party/install.sh does)";
+  // Mesa can be told to be an older one.
+  const std::string command = "env MESA_GL_VERSION_OVERRIDE=2.1 timeout 500 " PECTORA_PROGRAM " view > " + home + "/out.txt 2>&1";
+  EXPECT_EQ(exitCode(command), 2);
+  const std::string told = readFile(home + "/out.txt");
+  EXPECT_NE(told.find("OpenGL 3.3"), std::string::npos) << told;
+  EXPECT_NE(told.find("Install a driver"), std::string::npos) << told;
 }
 
 TEST(Window, ProgramSaysWhatToDoWithoutADisplay) {
