@@ -218,6 +218,11 @@ void ComparePanel::controls(Context& context) {
   parameterControls(context, c.registration, "registration");
   if (ImGui::Checkbox("Then by the surfaces (ICP)", &c.usesIcp)) context.changed(false);
   mark("icp");
+  if (registration) row("Landmarks, RMS", fmt::format("{:.2f} mm", registration->rms));
+  if (const auto* icp = Results::as<Registration>(context.results->byIcp)) row("Surfaces, RMS", fmt::format("{:.2f} mm", icp->rms));
+  if (const Comparison* comparison = context.results->comparisonValue()) table(*comparison, context.scale);
+
+  // What else can be set of both steps.
   const auto details = [&](const char* label, PluginChoice& plugin, const std::string& name) {
     const bool isOpen = ImGui::TreeNodeEx(label, ImGuiTreeNodeFlags_SpanAvailWidth);
     mark(name + ".open");
@@ -227,9 +232,6 @@ void ComparePanel::controls(Context& context) {
   };
   if (c.usesIcp) details("How surfaces are brought together", c.icp, "icp");
   details("How distances are measured", c.comparer, "comparer");
-  if (registration) row("Landmarks, RMS", fmt::format("{:.2f} mm", registration->rms));
-  if (const auto* icp = Results::as<Registration>(context.results->byIcp)) row("Surfaces, RMS", fmt::format("{:.2f} mm", icp->rms));
-  if (const Comparison* comparison = context.results->comparisonValue()) table(*comparison, context.scale);
 }
 
 void ComparePanel::table(const Comparison& c, float scale) {

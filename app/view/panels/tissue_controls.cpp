@@ -17,13 +17,15 @@ std::string shortName(const std::string& id) { return id.substr(id.find('.') + 1
 void tellWorth(const Context& context, const std::string& id, bool isOn) {
   const auto worth = std::find_if(context.worths.begin(), context.worths.end(), [&](const EffectWorth& w) { return w.id == id; });
   if (worth == context.worths.end() || worth->isOn != isOn) return;
-  const std::string text = worth->refused.empty() ? fmt::format("{} mm · {:.2f} ms", figure(worth->largest), worth->milliseconds) : isOn ? "needed" : "cannot be solved";
+  std::string text = fmt::format("{} mm · {:.2f} ms", figure(worth->largest), worth->milliseconds);
+  std::string told = fmt::format("{} it the skin would lie elsewhere by {:.2f} mm at most and {:.2f} mm RMS; it costs {:.2f} ms of each evaluation of all forces",
+                                 isOn ? "Without" : "With", worth->largest, worth->rms, worth->milliseconds);
+  if (!worth->refused.empty()) text = isOn ? "needed" : "cannot be solved", told = worth->refused;
+  if (!worth->idle.empty()) text = "nothing to do", told = worth->idle;
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x);
   ImGui::TextColored(kMuted, "%s", text.c_str());
   mark(id + ".worth");
-  hint(worth->refused.empty() ? fmt::format("{} it the skin would lie elsewhere by {:.2f} mm at most and {:.2f} mm RMS; it costs {:.2f} ms of each evaluation of all forces",
-                                            isOn ? "Without" : "With", worth->largest, worth->rms, worth->milliseconds)
-                              : worth->refused);
+  hint(told);
 }
 
 // "effect.j_curve" is shown as "J curve".

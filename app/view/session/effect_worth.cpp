@@ -27,6 +27,9 @@ EffectWorth measure(EffectWorth worth, const std::shared_ptr<const Scene>& chang
   try {
     WarmSolve solve(changed, solver.id, makeSolver(registry, solver), registry, host);
     const System& system = *solve.compiled().system;
+    for (const EffectUse& use : solve.compiled().effects)
+      if (use.id == worth.id && !use.isActive) worth.idle = use.reason;
+    if (!worth.idle.empty()) return worth;
     worth.milliseconds = std::max(0.0, (worth.isOn ? 1 : -1) * (costOfAll - cost(system)));
     // A guide more or less, such as of a bar that gives way, and the motion is another scene's: then from rest.
     if (with.anchors.size() == system.rest.size() - system.freeNodes) solve.startFrom(with);

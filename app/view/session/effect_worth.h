@@ -14,6 +14,7 @@ struct EffectWorth {
   std::string id;
   bool isOn = true;              ///< in the scene, and left out; or taken in
   std::string refused = {};      ///< why the scene cannot be solved so; empty: it can
+  std::string idle = {};         ///< why it would have nothing to do in this scene; empty: it has
   double largest = 0, rms = 0;   ///< change of the skin, mm
   double milliseconds = 0;       ///< of one evaluation of all forces that it costs
 };

@@ -132,6 +132,7 @@ TEST(Pipeline, MeasuresWhatEachEffectChanges) {
   EXPECT_GT(of("effect.cross").largest, of("effect.bend").largest);
   for (const EffectWorth& w : worths) EXPECT_LE(w.rms, w.largest) << w.id;
   EXPECT_NE(of("effect.attachment").refused, "") << "nothing else holds the wall";
+  EXPECT_NE(of("effect.tissue").idle, "") << "a lattice has no solid cells";
   EXPECT_GT(of("effect.volume").largest, 0.1) << "not in the scene, and would change it";
   // What taking it in was told to change is what it changes.
   const auto before = s.worker.results();
