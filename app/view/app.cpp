@@ -101,13 +101,23 @@ void App::frame() {
   if (ImGui::IsAnyMouseDown() || ImGui::IsMouseReleased(0) || io.MouseWheel != 0 || hasKeys) settling_ = std::max(settling_, 2);
   target_.end();
 
-  if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
-  if (auto& turn = context_.turntable) {
-    scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, int(900 * s), int(900 * s));
-    if (turn->drawn == Turntable::kPictures) {
-      context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
-      turn.reset();
-    }
+  takePictures();
+}
+
+void App::takePictures() {
+  auto& turn = context_.turntable;
+  try {
+    if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
+    if (!turn) return;
+    const int side = int(900 * context_.scale);
+    scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, side, side);
+    if (turn->drawn < Turntable::kPictures) return;
+    context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
+    turn.reset();
+  } catch (const std::exception& error) {
+    // Such as a folder that cannot be written.
+    context_.message = error.what();
+    turn.reset();
   }
 }
 

@@ -42,6 +42,7 @@ class App {
   void opening(float width, float height);
   void splitter(const char* name, float x, float y, float height, float& value, float sign);
   void shortcuts();
+  void takePictures();
 
   Target& target_;
   Context context_;

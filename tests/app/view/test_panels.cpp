@@ -1,6 +1,8 @@
 // Single panels: what they offer, and what becomes of it.
 #include "tests/app/view/desk.h"
 
+#include "app/view/session/script_text.h"
+
 using namespace pectora;
 using namespace pectora::view;
 
@@ -104,6 +106,16 @@ TEST(Panels, DrawATurntablePictureByPictureAndStopItWhenAsked) {
   desk.click("turntable");
   EXPECT_FALSE(desk.context().turntable);
   EXPECT_EQ(pictures(), Turntable::kPictures);
+
+  // A place that cannot be written is told, and nothing ends.
+  desk.context().turntable = Turntable{desk.home + "/turntable/turn_000.png"};
+  desk.rest();
+  EXPECT_FALSE(desk.context().turntable);
+  EXPECT_NE(desk.context().message, "");
+  desk.context().message.clear();
+  desk.context().wantedPicture = "/nowhere/at/all.png";
+  desk.hand.frames(1);
+  EXPECT_NE(desk.context().message.find("cannot be written"), std::string::npos) << desk.context().message;
   EXPECT_EQ(openGlErrors(), 0);
 }
 
@@ -134,4 +146,47 @@ TEST(Panels, KeepTheirWidthsAndTheWindowsSize) {
   Layout damaged;
   damaged.load();
   EXPECT_EQ(damaged.width, Layout().width);
+}
+
+TEST(Panels, CopySaveAndLoadWhatWasTuned) {
+  HighDesktop desk("view_preset_home");
+  desk.openPhantom();
+  desk.click("tab.tissue");
+  desk.click("effect.bend");
+  desk.click("preset.copy");
+  EXPECT_EQ(std::string(ImGui::GetClipboardText()), presetOf(desk.context().choices));
+  desk.click("preset.save");
+  desk.click("effect.bend");
+  const auto isOn = [&] {
+    const auto& effects = desk.context().choices.effects;
+    return std::find_if(effects.begin(), effects.end(), [](const EffectChoice& e) { return e.plugin.id == "effect.bend"; })->isOn;
+  };
+  EXPECT_TRUE(isOn());
+  desk.click("preset.load");
+  desk.click("preset.my preset");
+  EXPECT_FALSE(isOn()) << desk.told();
+  desk.click("undo");
+  EXPECT_TRUE(isOn()) << "a preset is one step";
+  desk.click("tab.script");
+  desk.click("script.copy");
+  EXPECT_EQ(std::string(ImGui::GetClipboardText()), scriptOf(desk.context().choices));
+}
+
+TEST(Panels, ConsoleBringsBackEarlierLines) {
+  Desktop desk("view_console_home");
+  desk.rest();
+  desk.click("tab.script");
+  desk.hand.click("console.line");
+  for (const char* line : {"print(1 + 1)", "print(2 + 3)"}) {
+    desk.hand.type(line, true);
+    desk.rest();
+  }
+  ImGuiIO& io = ImGui::GetIO();
+  for (int i = 0; i < 2; ++i)
+    for (bool isDown : {true, false}) io.KeysDown[io.KeyMap[ImGuiKey_UpArrow]] = isDown, desk.hand.frames(1);
+  desk.hand.type("", true);
+  desk.rest();
+  int twos = 0;
+  for (const LogLine& line : desk.context().log) twos += line.kind == LogLine::Kind::print && line.text == "2";
+  EXPECT_EQ(twos, 2) << desk.told();
 }
