@@ -114,6 +114,7 @@ void Pipeline::solveLive() {
       return;
     }
     showsWay_ = true;
+    lastSeen_ = {};   // of this solve alone: another's nodes may be others
     const auto motion = solve.solve(*results_.planValue(), host);
     results_.motion = {motion, nullptr};
     results_.skin = std::shared_ptr<const std::vector<Vec3>>(motion, &motion->outer);
