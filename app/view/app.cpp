@@ -129,8 +129,9 @@ void App::savePicture(const std::string& path) const {
 void App::shortcuts() {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput || !io.KeyCtrl) return;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z))) io.KeyShift ? context_.redo() : context_.undo();
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y))) context_.redo();
+  // Once a press, however slow the frames are while it lasts.
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z), false)) io.KeyShift ? context_.redo() : context_.undo();
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y), false)) context_.redo();
 }
 
 void App::topBar(float width, float) {
