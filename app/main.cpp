@@ -172,8 +172,8 @@ int main(int argc, char** argv) {
   view->add_option("PATH", options.window.path, "What to open: a folder of DICOM files or of results, a script, a scan or a preset");
   view->add_option("--tour", options.window.tour, "Write pictures of a tour through the window into this folder, and open none");
   view->add_option("--scale", options.window.scale, "Size of text and panels (default: as the display says)")->check(CLI::Range(0.5, 4.0));
-  view->add_option("--width", options.window.width, "Width in pixels")->check(CLI::Range(960, 10000));
-  view->add_option("--height", options.window.height, "Height in pixels")->check(CLI::Range(600, 10000));
+  view->add_option("--width", options.window.width, "Width in pixels (default: as it was last time)")->check(CLI::Range(960, 10000));
+  view->add_option("--height", options.window.height, "Height in pixels (default: as it was last time)")->check(CLI::Range(600, 10000));
 #endif
   common(view);
 

@@ -34,9 +34,12 @@ App::App(Target& target, Registry& registry, std::function<void()> wake) : targe
   context_.scale = target.scale();
 }
 
-App::~App() { context_.layout.save(); }
+void App::keepLayout() {
+  std::tie(context_.layout.width, context_.layout.height) = target_.size();
+  context_.layout.save();
+}
 
-bool App::wantsFrame() const { return settling_ > 0 || isCoarse_; }
+bool App::wantsFrame() const { return settling_ > 0 || isCoarse_ || context_.turntable; }
 
 void App::frame() {
   // What happened since the last one.
@@ -98,10 +101,23 @@ void App::frame() {
   if (ImGui::IsAnyMouseDown() || ImGui::IsMouseReleased(0) || io.MouseWheel != 0 || hasKeys) settling_ = std::max(settling_, 2);
   target_.end();
 
-  if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
-  if (const std::string folder = script_.takeTurntable(); !folder.empty()) {
-    scene_.turntable(context_, folder, 36, int(900 * s), int(900 * s));
-    context_.worker().log(LogLine::Kind::print, "The turntable is in " + folder);
+  takePictures();
+}
+
+void App::takePictures() {
+  auto& turn = context_.turntable;
+  try {
+    if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
+    if (!turn) return;
+    const int side = int(900 * context_.scale);
+    scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, side, side);
+    if (turn->drawn < Turntable::kPictures) return;
+    context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
+    turn.reset();
+  } catch (const std::exception& error) {
+    // Such as a folder that cannot be written.
+    context_.message = error.what();
+    turn.reset();
   }
 }
 
@@ -113,8 +129,9 @@ void App::savePicture(const std::string& path) const {
 void App::shortcuts() {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput || !io.KeyCtrl) return;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z))) io.KeyShift ? context_.redo() : context_.undo();
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y))) context_.redo();
+  // Once a press, however slow the frames are while it lasts.
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z), false)) io.KeyShift ? context_.redo() : context_.undo();
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y), false)) context_.redo();
 }
 
 void App::topBar(float width, float) {

@@ -23,7 +23,6 @@ struct ImGuiHolder {
 class App {
  public:
   App(Target& target, Registry& registry, std::function<void()> wake);
-  ~App();
 
   /// Draws one frame.
   void frame();
@@ -31,6 +30,8 @@ class App {
   bool wantsFrame() const;
   /// Writes the last frame as a PNG.
   void savePicture(const std::string& path) const;
+  /// Remembers the parts of the window for the next time.
+  void keepLayout();
   Context& context() { return context_; }
   Camera& camera() { return scene_.camera(); }
 
@@ -41,6 +42,7 @@ class App {
   void opening(float width, float height);
   void splitter(const char* name, float x, float y, float height, float& value, float sign);
   void shortcuts();
+  void takePictures();
 
   Target& target_;
   Context context_;

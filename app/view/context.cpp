@@ -1,5 +1,7 @@
 #include "app/view/context.h"
 
+#include "app/view/platform/target.h"
+
 #include <filesystem>
 #include <fstream>
 
@@ -11,11 +13,14 @@ constexpr std::size_t kSameWarning = 40;   // letters that tell what a warning i
 
 void Layout::load() {
   std::ifstream file(stateFolder() / "layout");
-  float l = 0, r = 0, c = 0;
-  if (file >> l >> r >> c && l > 100 && r > 100 && c > 50 && l < 2000 && r < 2000 && c < 2000) left = l, right = r, console = c;
+  Layout kept;
+  if (!(file >> kept.left >> kept.right >> kept.console >> kept.width >> kept.height)) return;
+  const auto isSound = [](double value, double least, double most) { return value >= least && value <= most; };
+  const bool areColumns = isSound(kept.left, 100, 2000) && isSound(kept.right, 100, 2000) && isSound(kept.console, 50, 2000);
+  if (areColumns && isSound(kept.width, kLeastWidth, 10000) && isSound(kept.height, kLeastHeight, 10000)) *this = kept;
 }
 
-void Layout::save() const { std::ofstream(stateFolder() / "layout") << left << " " << right << " " << console << "\n"; }
+void Layout::save() const { std::ofstream(stateFolder() / "layout") << left << " " << right << " " << console << " " << width << " " << height << "\n"; }
 
 Context::Context(Registry& registry, std::function<void()> wake) : catalog(registry), worker_(registry, std::move(wake)) {
   choices = initialChoices(catalog.ids("solver"));
@@ -98,7 +103,7 @@ void Context::open(const std::string& given) {
   }
   for (const char* surface : {".ply", ".stl", ".obj", ".vtk", ".vtp", ".txt"}) {
     if (ending != surface) continue;
-    choices.scanPath = path;
+    choices.scan.settings = {{"path", path}};
     choices.scanLandmarks = {};
     tab = Tab::compare;
     changed(false);
@@ -116,7 +121,7 @@ void Context::open(const std::string& given) {
 void Context::openPhantom() {
   if (choices.loader.id != "loader.phantom") choices.loader = {"loader.phantom", {{"matrix", 256.0}}};
   choices.source = Source::phantom;
-  choices.scanPath.clear();
+  choices.scan.settings.clear();
   choices.ctLandmarks = choices.scanLandmarks = {};
   choices.corrections.clear();
   picked.reset();

@@ -14,7 +14,9 @@ namespace pectora::view {
 enum class Tab { patient, anatomy, bar, tissue, compare, accuracy, script };
 inline constexpr int kTabs = 7;
 
-enum class SkinLook { natural, glass, displacement, hidden };
+enum class SkinLook { natural, glass, displacement, distance, hidden };
+/// Whether it hides what lies behind it.
+inline bool isOpaque(SkinLook look) { return look != SkinLook::glass && look != SkinLook::hidden; }
 
 /// How the scene is shown. Not part of what is computed.
 struct SceneOptions {
@@ -31,8 +33,16 @@ struct SceneOptions {
 /// The parts of the window, in units of the layout; kept between sessions.
 struct Layout {
   float left = 344, right = 264, console = 200;
+  int width = 1280, height = 800;   ///< of the window, pixels
   void load();
   void save() const;
+};
+
+/// A turn about the patient that is being drawn, a picture with each frame.
+struct Turntable {
+  std::string folder;
+  int drawn = 0;
+  static constexpr int kPictures = 36;
 };
 
 struct PickedPoint {
@@ -72,6 +82,7 @@ class Context {
   std::string typedPath, typedScan, presetName = "my preset";   ///< what stands in those fields
   std::string message;                 ///< for the status line; empty: none
   std::optional<std::string> wantedPicture;   ///< path of a PNG of the next frame
+  std::optional<Turntable> turntable;         ///< until it is done
 
   /// Takes over what the worker has to tell. Once a frame.
   void refresh();

@@ -66,10 +66,15 @@ void Hand::type(const std::string& text, bool enter) {
   step();
 }
 
-void Hand::control(char letter) {
+int Hand::keyOf(char letter) {
+  // The letters that ImGui knows.
   static const std::map<char, ImGuiKey> keys{{'a', ImGuiKey_A}, {'c', ImGuiKey_C}, {'v', ImGuiKey_V}, {'x', ImGuiKey_X}, {'y', ImGuiKey_Y}, {'z', ImGuiKey_Z}};
+  return ImGui::GetIO().KeyMap[keys.at(letter)];
+}
+
+void Hand::control(char letter) {
   ImGuiIO& io = ImGui::GetIO();
-  const int key = io.KeyMap[keys.at(letter)];   // the letters that ImGui knows
+  const int key = keyOf(letter);
   io.KeyCtrl = true;
   io.KeysDown[key] = true;
   step();

@@ -32,6 +32,8 @@ class Hand {
   virtual void step() { app_.frame(); }
   virtual void moveTo(ImVec2 at);
   virtual void press(bool isDown);
+  /// The index of a letter's key in ImGui's KeysDown.
+  static int keyOf(char letter);
   App& app_;
 };
 

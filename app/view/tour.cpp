@@ -11,7 +11,8 @@ namespace pectora::view {
 void takeTour(Registry& registry, const ViewOptions& options) {
   std::filesystem::create_directories(options.tour);
   const ImGuiHolder imgui;
-  const auto target = makeOffscreen(options.width, options.height, options.scale);
+  const int width = options.width > 0 ? options.width : Layout().width, height = options.height > 0 ? options.height : Layout().height;
+  const auto target = makeOffscreen(width, height, options.scale);
   App app(*target, registry, [] {});
   app.context().layout = {};
   Hand hand(app);
@@ -24,7 +25,7 @@ void takeTour(Registry& registry, const ViewOptions& options) {
     // Six bits a colour are enough for a page, and a third smaller.
     std::vector<unsigned char> rgba = target->pixels();
     for (unsigned char& c : rgba) c = static_cast<unsigned char>((c & 0xFC) | c >> 6);
-    writePng(options.tour + "/" + name + ".png", options.width, options.height, rgba);
+    writePng(options.tour + "/" + name + ".png", width, height, rgba);
   };
   rest();
   picture("opening");

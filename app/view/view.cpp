@@ -11,11 +11,14 @@ void runView(Registry& registry, const ViewOptions& options) {
     return;
   }
   const ImGuiHolder imgui;
-  const auto target = makeWindow(options.width, options.height, options.scale);
+  Layout last;
+  last.load();
+  const auto target = makeWindow(options.width > 0 ? options.width : last.width, options.height > 0 ? options.height : last.height, options.scale);
   App app(*target, registry, [] { wakeWindow(); });
   if (!options.path.empty()) app.context().open(options.path);
   // Frames are drawn when something happens, and not otherwise.
   while (target->wait(app.wantsFrame() ? 0 : 1e9)) app.frame();
+  app.keepLayout();
 }
 
 }  // namespace pectora::view

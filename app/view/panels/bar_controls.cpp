@@ -59,11 +59,12 @@ void barControls(Context& context) {
   heading("The bar");
   parametersAbout(context, About::bar);
   secondBar(context);
-  if (ImGui::TreeNode("Its steel")) {
+  const bool isOpen = ImGui::TreeNode("Its steel");
+  mark("bar.shape.open");
+  if (isOpen) {
     parametersAbout(context, About::shape);
     ImGui::TreePop();
   }
-  mark("bar.shape");
   note("In the picture a bar can be taken with the mouse: its middle up and down is the level, forwards the lift; its ends tilt it.");
 
   const Plan* plan = context.results->planValue();

@@ -76,7 +76,7 @@ Landmarks& ComparePanel::placed(Context& context, int side) { return side == 0 ?
 
 const Landmarks& ComparePanel::landmarks(const Context& context, int side) const {
   const Landmarks& byHand = side == 0 ? context.choices.ctLandmarks : context.choices.scanLandmarks;
-  if (!byHand.points.empty() || !context.choices.scanPath.empty()) return byHand;
+  if (!byHand.points.empty() || context.choices.hasScan()) return byHand;
   const auto* own = Results::as<Landmarks>(side == 0 ? context.results->phantomCtLandmarks : context.results->phantomScanLandmarks);
   return own ? *own : none_;
 }
@@ -183,7 +183,8 @@ void ComparePanel::controls(Context& context) {
   const bool isEntered = textField("##scan", "PLY, STL, OBJ or FastSCAN text", path, ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine(0, 6 * context.scale);
   if ((button("Open", "scan.open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);
-  if (c.scanPath.empty()) note(c.source == Source::phantom ? "The phantom brings its own scan." : "None is open.");
+  if (c.hasScan()) parameterControls(context, c.scan, "scan");
+  else note(c.source == Source::phantom ? "The phantom brings its own scan." : "None is open.");
   if (!context.results->scan.value) return;
 
   heading("Landmarks");
@@ -214,16 +215,23 @@ void ComparePanel::controls(Context& context) {
   }
 
   heading("Registration");
-  for (const char* method : {"rigid", "similarity", "affine"}) {
-    if (ImGui::RadioButton(method, c.registration == method)) c.registration = method, context.changed(false);
-    ImGui::SameLine();
-  }
-  ImGui::NewLine();
+  parameterControls(context, c.registration, "registration");
   if (ImGui::Checkbox("Then by the surfaces (ICP)", &c.usesIcp)) context.changed(false);
   mark("icp");
   if (registration) row("Landmarks, RMS", fmt::format("{:.2f} mm", registration->rms));
   if (const auto* icp = Results::as<Registration>(context.results->byIcp)) row("Surfaces, RMS", fmt::format("{:.2f} mm", icp->rms));
   if (const Comparison* comparison = context.results->comparisonValue()) table(*comparison, context.scale);
+
+  // What else can be set of both steps.
+  const auto details = [&](const char* label, PluginChoice& plugin, const std::string& name) {
+    const bool isOpen = ImGui::TreeNodeEx(label, ImGuiTreeNodeFlags_SpanAvailWidth);
+    mark(name + ".open");
+    if (!isOpen) return;
+    parameterControls(context, plugin, name, {"name"});
+    ImGui::TreePop();
+  };
+  if (c.usesIcp) details("How surfaces are brought together", c.icp, "icp");
+  details("How distances are measured", c.comparer, "comparer");
 }
 
 void ComparePanel::table(const Comparison& c, float scale) {

@@ -42,6 +42,17 @@ void energyCurve(const Motion& motion, float scale) {
   hint(fmt::format("From {:.4g} to {:.4g} N mm over {} iterations; the height is the distance to the end, over eight decades. Load steps raise it again.", history.front(), history.back(), motion.iterations));
 }
 
+// At the beginning of a line; what follows stands beside it.
+void progressBar(double fraction) {
+  const float width = 14 * ImGui::GetFontSize(), top = ImGui::GetCursorScreenPos().y + ImGui::GetFrameHeight() * 0.35f, height = ImGui::GetFrameHeight() * 0.3f;
+  const float left = ImGui::GetCursorScreenPos().x, done = std::max(height, width * float(std::clamp(fraction, 0.0, 1.0)));
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled({left, top}, {left + width, top + height}, IM_COL32(50, 57, 65, 255), height / 2);
+  list->AddRectFilled({left, top}, {left + done, top + height}, ImGui::GetColorU32(kAccent), height / 2);
+  ImGui::Dummy({width, ImGui::GetFrameHeight()});
+  ImGui::SameLine();
+}
+
 }  // namespace
 
 void figuresPanel(Context& context) {
@@ -94,7 +105,10 @@ void figuresPanel(Context& context) {
     if (motion->invertedPrisms > 0) row("Cells inside out", std::to_string(motion->invertedPrisms), &kBad);
     if (r.sceneValue()) row("Skin points", std::to_string(r.sceneValue()->points()));
     if (r.motion.record) row("Time from rest", fmt::format("{:.0f} ms", 1000 * r.motion.record->seconds));
-    if (r.liveMs > 0) row("Time while moving", fmt::format("{:.0f} ms", r.liveMs));
+    if (r.liveMs > 0) {
+      row("Time while moving", fmt::format("{:.0f} ms", r.liveMs));
+      hint(fmt::format("From the change to the new skin; {:.1f} ms of it are the solver's", r.solveMs));
+    }
     if (r.settled >= 0) {
       row("Live against rest", fmt::format("{:.2f} mm", r.settled), r.settled > 0.5 ? &kWarm : nullptr);
       hint("How far the skin that was shown while you moved something lay, at most, from the one that a script finds from rest. "
@@ -116,29 +130,28 @@ void figuresPanel(Context& context) {
 
 void statusLine(Context& context) {
   const Activity& activity = context.activity;
-  const float em = ImGui::GetFontSize();
+  const Results& r = *context.results;
+  const bool isUnfinished = !activity.isBusy && r.ct.value && (!r.motion.value || r.isPreview);
   ImGui::AlignTextToFramePadding();
-  if (activity.isBusy && !activity.isLive && activity.seconds > 0.15) {
-    const float width = 14 * em;
-    const ImVec2 low = ImGui::GetCursorScreenPos();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const float top = low.y + ImGui::GetFrameHeight() * 0.35f, height = ImGui::GetFrameHeight() * 0.3f;
-    list->AddRectFilled({low.x, top}, {low.x + width, top + height}, IM_COL32(50, 57, 65, 255), height / 2);
-    list->AddRectFilled({low.x, top}, {low.x + std::max(height, width * float(std::clamp(activity.fraction, 0.0, 1.0))), top + height}, ImGui::GetColorU32(kAccent), height / 2);
-    ImGui::Dummy({width, ImGui::GetFrameHeight()});
+  if (context.turntable) {
+    progressBar(double(context.turntable->drawn) / Turntable::kPictures);
+    if (button("Cancel", "cancel")) context.turntable.reset();
     ImGui::SameLine();
+    ImGui::TextColored(kMuted, "turntable");
+  } else if (activity.isBusy && activity.seconds > (activity.isLive ? 0.5 : 0.15)) {
+    progressBar(activity.fraction);
     if (activity.seconds > 0.5) {
       if (button("Cancel", "cancel")) context.worker().cancel();
       ImGui::SameLine();
     }
     ImGui::TextColored(kMuted, "%s", activity.what.empty() ? activity.stage.c_str() : (activity.stage + ": " + activity.what).c_str());
-  } else if (!context.results->error.empty() || !context.message.empty()) {
-    const std::string& text = context.message.empty() ? context.results->error : context.message;
+  } else if (!r.error.empty() || !context.message.empty()) {
+    const std::string& text = context.message.empty() ? r.error : context.message;
     ImGui::TextColored(kBad, "%s", text.substr(0, text.find('\n')).c_str());
     hint(text);
   } else {
-    ImGui::TextColored(kMuted, "%s", context.results->motion.value || context.results->after.value ? "Ready" : context.results->ct.value ? "Not finished" : "");
-    if (context.results->ct.value && !context.results->motion.value && !activity.isBusy) {
+    ImGui::TextColored(kMuted, "%s", isUnfinished ? "Not finished" : r.motion.value || r.after.value ? "Ready" : "");
+    if (isUnfinished) {
       ImGui::SameLine();
       if (button("Go on", "resume")) context.changed(false);
     }

@@ -26,6 +26,12 @@ void patientControls(Context& context) {
     if (!chosen.empty()) context.open(chosen);
   }
 
+  // How it is read: which of its series, and the like.
+  if (context.choices.source == Source::dicom) {
+    heading("The CT");
+    parameterControls(context, context.choices.loader, "ct", {"files"});
+  }
+
   ImGui::Dummy({0, 4 * context.scale});
   ImGui::Separator();
   heading("Or make a phantom patient");
@@ -38,7 +44,9 @@ void patientControls(Context& context) {
     const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
     if (isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);
   }
-  if (ImGui::TreeNode("More about the phantom")) {
+  const bool isOpen = ImGui::TreeNode("More about the phantom");
+  mark("phantom.open");
+  if (isOpen) {
     for (const Parameter& p : context.catalog.parameters("loader.phantom")) {
       const bool isMain = p.name == "haller" || p.name == "type" || p.name == "torsion" || p.name == "eccentricity" || p.name == "age" || p.name == "bmi";
       if (!isMain) parameterControl(context, p, context.choices.loader.settings, "phantom." + p.name);

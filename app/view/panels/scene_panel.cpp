@@ -37,11 +37,13 @@ void ScenePanel::toolbar(Context& context) {
 
   ImGui::SameLine(0, 16 * context.scale);
   ImGui::SetNextItemWidth(134 * context.scale);
-  static constexpr const char* kLooks[] = {"Skin", "Glass skin", "Displacement", "No skin"};
+  static constexpr const char* kLooks[] = {"Skin", "Glass skin", "Displacement", "Distance", "No skin"};
   if (ImGui::BeginCombo("##skin", kLooks[int(o.skin)])) {
-    for (int i = 0; i < 4; ++i) {
-      if (ImGui::Selectable(kLooks[i], int(o.skin) == i)) o.skin = SkinLook(i);
+    for (int i = 0; i < int(std::size(kLooks)); ++i) {
+      const bool isThere = SkinLook(i) != SkinLook::distance || context.results->scanDistances;
+      if (ImGui::Selectable(kLooks[i], int(o.skin) == i, isThere ? 0 : ImGuiSelectableFlags_Disabled)) o.skin = SkinLook(i);
       mark(std::string("skin.") + kLooks[i]);
+      if (SkinLook(i) == SkinLook::distance) hint(isThere ? "How far the scan lies outside the predicted skin" : "Needs a scan that is registered");
     }
     ImGui::EndCombo();
   } else {
@@ -114,8 +116,7 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
   if (input.isPressed && context.scene.hasBar) {
     // The bar can be taken where nothing opaque lies before it.
     const Ray ray = viewport_.camera.ray(input.at.x, input.at.y);
-    const bool isOpaque = context.scene.skin == SkinLook::natural || context.scene.skin == SkinLook::displacement;
-    const auto skin = isOpaque ? pick(parts_.skin(), ray) : std::nullopt;
+    const auto skin = isOpaque(context.scene.skin) ? pick(parts_.skin(), ray) : std::nullopt;
     double nearest = skin ? skin->distance : INFINITY;
     for (std::size_t i = 0; i < parts_.barHandles().size(); ++i)
       if (const auto hit = pick(parts_.barHandles()[i], ray); hit && hit->distance < nearest) {
@@ -169,7 +170,7 @@ void ScenePanel::overlays(Context& context) {
   list->PushClipRect(low, {low.x + size.x, low.y + size.y}, true);
 
   // Numbers of the ribs at their front ends.
-  if (context.scene.hasBones && context.scene.skin != SkinLook::natural && context.scene.skin != SkinLook::displacement)
+  if (context.scene.hasBones && !isOpaque(context.scene.skin))
     if (const RibCage* cage = context.results->cageValue()) {
       std::vector<ImVec2> taken;
       for (const RibCurve& rib : cage->ribs) {
@@ -199,11 +200,14 @@ void ScenePanel::overlays(Context& context) {
     const int point = context.picked->point;
     const Scene* scene = context.results->sceneValue();
     ImVec2 at;
-    if (viewport_.screen(parts_.skin().points[point], at) && scene) {
-      const auto& skin = context.results->skin;
-      const Vec3 d = skin && skin->size() == scene->outer.size() ? (*skin)[point] - scene->outer[point] : Vec3{};
-      std::string text = fmt::format("row {}, column {}\nmoved {:.1f} mm: {:.1f} forward, {:+.1f} up", point / scene->columns, point % scene->columns, norm(d), -d.y, d.z);
-      if (context.picked->isKnown) {
+    if (viewport_.screen(parts_.skin().points[point], at)) {
+      const Vec3 d = parts_.displacement(point);
+      std::string text = scene ? fmt::format("row {}, column {}", point / scene->columns, point % scene->columns) : fmt::format("point {}", point);
+      text += fmt::format("\nmoved {:.1f} mm: {:.1f} forward, {:+.1f} up", norm(d), -d.y, d.z);
+      const auto& distances = context.results->scanDistances;
+      if (distances && std::size_t(point) < distances->size() && std::isfinite((*distances)[point]) && !context.results->isLive)
+        text += fmt::format("\nthe scan lies {:.1f} mm {} of it", std::abs((*distances)[point]), (*distances)[point] < 0 ? "inside" : "outside");
+      if (context.picked->isKnown && !context.picked->springs.empty()) {
         double most = 0, sum = 0;
         for (const PickedSpring& s : context.picked->springs) most = std::max(most, std::abs(s.force)), sum += s.stiffness;
         text += fmt::format("\n{} springs, {:.3f} N/mm in all, at most {:.3f} N", context.picked->springs.size(), sum, most);
@@ -216,7 +220,7 @@ void ScenePanel::overlays(Context& context) {
       list->AddText(corner, IM_COL32(230, 235, 240, 255), text.c_str());
     }
   }
-  if (held_ || context.results->isPreview) {
+  if (held_ || (context.results->isPreview && context.activity.isBusy)) {
     const std::string text = context.results->isPreview ? "solving…" : fmt::format("{:.0f} ms", context.results->liveMs);
     list->AddText({low.x + em, low.y + size.y - 1.8f * em}, IM_COL32(170, 180, 190, 255), text.c_str());
   }
@@ -266,20 +270,17 @@ void ScenePanel::colorBar(Context& context) {
   ImGui::SetCursorPos(cursor);
 }
 
-int ScenePanel::turntable(const Context& context, const std::string& folder, int pictures, int width, int height) {
-  std::filesystem::create_directories(folder);
+void ScenePanel::turntable(const Context& context, const std::string& folder, int index, int pictures, int width, int height) {
+  if (index == 0) turning_ = viewport_.camera;
+  turning_.aspect = double(width) / height;
+  turning_.pitch = 0.12;
+  turning_.yaw = 2 * kPi * index / pictures;
   parts_.update(context);
+  std::filesystem::create_directories(folder);
   Frame frame;
-  frame.resize(width, height, 4);
-  Camera camera = viewport_.camera;
-  camera.aspect = double(width) / height;
-  camera.pitch = 0.12;
-  for (int i = 0; i < pictures; ++i) {
-    camera.yaw = 2 * kPi * i / pictures;
-    renderer_.draw(frame, camera, parts_.items(context), context.scene.clip, 3.2f);
-    writePng(fmt::format("{}/turn_{:03}.png", folder, i), width, height, readPixels(frame.framebuffer(), width, height));
-  }
-  return pictures;
+  frame.resize(width, height, true);
+  renderer_.draw(frame, turning_, parts_.items(context), context.scene.clip, 3.2f);
+  writePng(fmt::format("{}/turn_{:03}.png", folder, index), width, height, readPixels(frame.framebuffer(), width, height));
 }
 
 }  // namespace pectora::view

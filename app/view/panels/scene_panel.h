@@ -12,8 +12,8 @@ class ScenePanel {
   void draw(Context& context, float width, float height);
   /// Whether a further frame would show more.
   bool isCoarse() const { return viewport_.isCoarse(); }
-  /// Pictures of one turn about the patient, as PNG files in a folder. Returns their number.
-  int turntable(const Context& context, const std::string& folder, int pictures, int width, int height);
+  /// One picture of a turn about the patient, as a PNG file of the folder: `index` of `pictures`, begun with 0.
+  void turntable(const Context& context, const std::string& folder, int index, int pictures, int width, int height);
   Camera& camera() { return viewport_.camera; }
 
  private:
@@ -34,7 +34,7 @@ class ScenePanel {
     double lift = 0, level = 0, tilt = 0;
   } atGrab_;                             // its settings then
   ImVec2 grabbedMouse_{};
-  bool isAtEnd_ = true;                  // the part slider is at "after"
+  Camera turning_;                       // of the turntable: as it stood at the first picture
 };
 
 }  // namespace pectora::view

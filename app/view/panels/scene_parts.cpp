@@ -30,18 +30,22 @@ void SceneParts::updateSkin(const Context& context) {
   const Results& r = *context.results;
   const Scene* scene = r.sceneValue();
   const float part = context.scene.part;
-  const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value;
-  if (skinOf_ == r.skin && sceneOf_ == made && skinPart_ == part) return;
+  const std::shared_ptr<const void> made = scene ? r.scene.value : r.after.value, distances = context.scene.skin == SkinLook::distance ? r.scanDistances : nullptr;
+  if (skinOf_ == r.skin && sceneOf_ == made && skinPart_ == part && distancesOf_ == distances) return;
   // While the bar moves, the triangles stay.
   const bool isKnown = made && sceneOf_ == made;
-  skinOf_ = r.skin, sceneOf_ = made, skinPart_ = part;
+  skinOf_ = r.skin, sceneOf_ = made, skinPart_ = part, distancesOf_ = distances;
   ++version_;
   if (!isKnown) skin_ = {};
-  const Mesh *before = Results::as<Mesh>(r.before), *kept = Results::as<Mesh>(r.after);
+  const Mesh* before = Results::as<Mesh>(r.before);
+  const auto kept = std::dynamic_pointer_cast<const Mesh>(r.after.value);
   if (scene || (before && kept)) {
     const std::vector<Vec3>& rest = scene ? scene->outer : before->points;
     if (!isKnown) skinAtRest_ = rest;
-    const std::vector<Vec3>& after = !scene ? kept->points : r.skin && r.skin->size() == rest.size() ? *r.skin : rest;
+    skinAfter_ = r.skin;
+    if (!scene) skinAfter_ = {kept, &kept->points};
+    else if (!skinAfter_ || skinAfter_->size() != rest.size()) skinAfter_ = {r.scene.value, &scene->outer};
+    const std::vector<Vec3>& after = *skinAfter_;
     if (!isKnown) skin_.triangles = scene ? layerMesh(scene->rows, scene->columns, {}).triangles : before->triangles;
     skin_.points.resize(rest.size());
     skin_.values.resize(rest.size());
@@ -51,6 +55,7 @@ void SceneParts::updateSkin(const Context& context) {
     }
     skin_.computeNormals();
     displacementLimit_ = roundLimit(skin_.values.data(), skin_.values.size());
+    if (distances && r.scanDistances->size() == rest.size()) skin_.values = *r.scanDistances;
   }
   isKnown ? gpuSkin_.uploadPoints(skin_) : gpuSkin_.upload(skin_);
 }
@@ -162,13 +167,18 @@ void SceneParts::updatePicked(const Context& context) {
 
 const char* SceneParts::coloring(const Context& context) const {
   if (context.scene.hasScan && hasDistance_) return "Scan to predicted skin, mm";
+  if (context.scene.skin == SkinLook::distance && context.results->scanDistances)
+    return context.results->isLive ? "Scan to skin before it moved, mm" : "Scan to predicted skin, mm";
   if (context.scene.skin == SkinLook::displacement && !gpuSkin_.isEmpty()) return "Displacement, mm";
   return nullptr;
 }
-ColorMap SceneParts::map(const Context& context) const { return context.scene.hasScan && hasDistance_ ? ColorMap::diverging : ColorMap::sequential; }
+ColorMap SceneParts::map(const Context& context) const {
+  const bool isDistance = hasDistance_ && (context.scene.hasScan || context.scene.skin == SkinLook::distance);
+  return isDistance ? ColorMap::diverging : ColorMap::sequential;
+}
 double SceneParts::high(const Context& context) const {
   if (context.scene.isRangeFixed) return context.scene.range;
-  return context.scene.hasScan && hasDistance_ ? distanceLimit_ : displacementLimit_;
+  return map(context) == ColorMap::diverging ? distanceLimit_ : displacementLimit_;
 }
 double SceneParts::low(const Context& context) const { return map(context) == ColorMap::diverging ? -high(context) : 0; }
 
@@ -189,6 +199,7 @@ std::vector<Item> SceneParts::items(const Context& context) const {
   Look skin{.color = kSkin};
   if (o.skin == SkinLook::glass) skin.isGlass = true;
   if (o.skin == SkinLook::displacement) skin.map = ColorMap::sequential, skin.low = 0, skin.high = o.isRangeFixed ? o.range : displacementLimit_;
+  if (o.skin == SkinLook::distance && context.results->scanDistances) skin.map = ColorMap::diverging, skin.low = low(context), skin.high = high(context);
   if (o.skin != SkinLook::hidden) list.push_back({&gpuSkin_, skin});
   return list;
 }

@@ -15,6 +15,8 @@ class SceneParts {
   std::uint64_t version() const { return version_; }
 
   const Surface& skin() const { return skin_; }
+  /// How the operation moves a point of the skin, mm.
+  Vec3 displacement(int point) const { return (*skinAfter_)[std::size_t(point)] - skinAtRest_[std::size_t(point)]; }
   /// The bars, thick enough to be taken with the mouse.
   const std::vector<Surface>& barHandles() const { return barHandles_; }
   /// The figure that colours the scene, with the ends of its range: null if nothing is coloured.
@@ -35,11 +37,12 @@ class SceneParts {
   std::vector<Surface> barHandles_;
   GpuSurface gpuSkin_, gpuRibs_, gpuCartilages_, gpuSternum_, gpuBar_, gpuScan_, gpuSprings_, gpuPicked_;
   std::vector<Vec3> skinAtRest_;
+  std::shared_ptr<const std::vector<Vec3>> skinAfter_;
   double displacementLimit_ = 1, distanceLimit_ = 1;
   bool hasDistance_ = false;
   std::uint64_t version_ = 0;
   // What each part was made of.
-  std::shared_ptr<const void> skinOf_, sceneOf_, ribsOf_, movedOf_, scanOf_;
+  std::shared_ptr<const void> skinOf_, sceneOf_, distancesOf_, ribsOf_, movedOf_, scanOf_;
   float skinPart_ = -1, movedPart_ = -1;
   const void* pickedSprings_ = nullptr;
   int pickedPoint_ = -1;

@@ -30,7 +30,7 @@ void ScriptPanel::controls(Context& context) {
   }
   if (button("Screenshot", "screenshot", {-1, 0})) context.wantedPicture = inFolder("screenshot.png");
   ImGui::BeginDisabled(!context.results->motionValue());
-  if (button("Turntable of 36 pictures", "turntable", {-1, 0})) turntable_ = inFolder("turntable");
+  if (button("Turntable of 36 pictures", "turntable", {-1, 0})) context.turntable = Turntable{inFolder("turntable")};
   if (button("Export all results", "export", {-1, 0}))
     context.worker().run("export", [folder = folder_, worker = &context.worker()](Pipeline& pipeline) {
       pipeline.exportTo(folder);

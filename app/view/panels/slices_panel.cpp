@@ -256,6 +256,16 @@ void SlicesPanel::controls(Context& context) {
 
   if (const auto place = corrections_.controls(context)) goTo(*volume, *place);
 
+  heading("How it is found");
+  for (PluginChoice* plugin : {&context.choices.segmenter, &context.choices.splines}) {
+    const bool isOpen = ImGui::TreeNodeEx(plugin->id.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
+    mark(plugin->id + ".open");
+    hint(context.catalog.summary(plugin->id));
+    if (!isOpen) continue;
+    parameterControls(context, *plugin, plugin->id);
+    ImGui::TreePop();
+  }
+
   heading("Found in it");
   ImGui::Checkbox("Outlines", &hasOutlines_);
   mark("outlines");

@@ -13,6 +13,21 @@ namespace {
 
 std::string shortName(const std::string& id) { return id.substr(id.find('.') + 1); }
 
+// What an effect changes and costs, at the right of its line, if it was measured as it is now.
+void tellWorth(const Context& context, const std::string& id, bool isOn) {
+  const auto worth = std::find_if(context.worths.begin(), context.worths.end(), [&](const EffectWorth& w) { return w.id == id; });
+  if (worth == context.worths.end() || worth->isOn != isOn) return;
+  std::string text = fmt::format("{} mm · {:.2f} ms", figure(worth->largest), worth->milliseconds);
+  std::string told = fmt::format("{} it the skin would lie elsewhere by {:.2f} mm at most and {:.2f} mm RMS; it costs {:.2f} ms of each evaluation of all forces",
+                                 isOn ? "Without" : "With", worth->largest, worth->rms, worth->milliseconds);
+  if (!worth->refused.empty()) text = isOn ? "needed" : "cannot be solved", told = worth->refused;
+  if (!worth->idle.empty()) text = "nothing to do", told = worth->idle;
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x);
+  ImGui::TextColored(kMuted, "%s", text.c_str());
+  mark(id + ".worth");
+  hint(told);
+}
+
 // "effect.j_curve" is shown as "J curve".
 void effectControls(Context& context, EffectChoice& effect) {
   const std::string name = "effect." + shortName(effect.plugin.id);
@@ -24,16 +39,7 @@ void effectControls(Context& context, EffectChoice& effect) {
   const bool isOpen = ImGui::TreeNodeEx(readable(shortName(effect.plugin.id)).c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
   mark(name + ".open");
   hint(context.catalog.summary(effect.plugin.id));
-  // What it is worth, at the right.
-  for (const EffectWorth& worth : context.worths) {
-    if (worth.id != effect.plugin.id || !effect.isOn) continue;
-    const std::string text = worth.isNeeded ? "needed" : fmt::format("{} mm · {:.2f} ms", figure(worth.largest), worth.milliseconds);
-    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x);
-    ImGui::TextColored(kMuted, "%s", text.c_str());
-    hint(worth.isNeeded ? "Without it, points are held by nothing"
-                        : fmt::format("Without it the skin would lie elsewhere by {:.2f} mm at most and {:.2f} mm RMS; it costs {:.2f} ms of each evaluation of all forces",
-                                      worth.largest, worth.rms, worth.milliseconds));
-  }
+  tellWorth(context, effect.plugin.id, effect.isOn);
   if (isOpen) {
     parameterControls(context, effect.plugin, name);
     for (const EffectUse& use : context.results->effects) {
@@ -56,6 +62,7 @@ void otherEffect(Context& context, const std::string& id) {
   }
   mark("effect." + shortName(id));
   if (ImGui::IsItemHovered()) hint(context.catalog.summary(id));
+  tellWorth(context, id, false);
   ImGui::PopID();
 }
 

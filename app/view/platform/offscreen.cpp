@@ -33,7 +33,7 @@ class Offscreen final : public Target {
       throw Error("EGL gives no OpenGL 3.3").advise("Install Mesa's software renderer (libgl1-mesa-dri)");
     }
     frame_ = std::make_unique<Frame>();
-    frame_->resize(width, height, 1);
+    frame_->resize(width, height, false);
     for (int key = 0; key < ImGuiKey_COUNT; ++key) ImGui::GetIO().KeyMap[key] = key;   // there is no keyboard but the hand's
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }

@@ -14,6 +14,7 @@ namespace pectora::view {
 /// A current OpenGL 3.3 context with ImGui's backends. Only one at a time.
 class Target {
  public:
+  Target();
   virtual ~Target() = default;
   /// Width and height in pixels.
   virtual std::pair<int, int> size() const = 0;
@@ -39,6 +40,8 @@ class Target {
   std::vector<std::string> dropped_;
 };
 
+/// Windows are no smaller, in units of the layout.
+inline constexpr int kLeastWidth = 960, kLeastHeight = 600;
 /// Throws Error without a display or OpenGL 3.3. `scale` 0: as the display says.
 std::unique_ptr<Target> makeWindow(int width, int height, float scale);
 /// EGL without a surface: needs no display. Throws Error if there is no such EGL.

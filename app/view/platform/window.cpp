@@ -32,7 +32,7 @@ class Window final : public Target {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
     scale_ = scale > 0 ? scale : std::max(1.f, x);
-    glfwSetWindowSizeLimits(window_, int(960 * scale_), int(600 * scale_), GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window_, int(kLeastWidth * scale_), int(kLeastHeight * scale_), GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
       static_cast<Window*>(glfwGetWindowUserPointer(window))->drop({paths, paths + count});
@@ -66,7 +66,7 @@ class Window final : public Target {
   void end() override {
     const auto [width, height] = size();
     // Into a frame of our own, which can be read whenever a picture is wanted: what a display has shown cannot.
-    frame_->resize(width, height, 1);
+    frame_->resize(width, height, false);
     frame_->bind();
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);

@@ -77,38 +77,42 @@ Program::Program(const std::string& vertexSource, const std::string& fragmentSou
 void Program::use() const { glUseProgram(object_.id()); }
 int Program::uniform(const char* name) const { return glGetUniformLocation(object_.id(), name); }
 
-void Frame::resize(int width, int height, int samples) {
-  if (width == width_ && height == height_ && samples == samples_) return;
-  width_ = width, height_ = height, samples_ = samples;
-  glBindTexture(GL_TEXTURE_2D, color_.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glBindRenderbuffer(GL_RENDERBUFFER, depth_.id());
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, plain_.id());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.id(), 0);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
-  if (samples <= 1) return;
-  glBindRenderbuffer(GL_RENDERBUFFER, fineColor_.id());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
-  glBindRenderbuffer(GL_RENDERBUFFER, fineDepth_.id());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width, height);
+void Frame::resize(int width, int height, bool isFine) {
+  isFine_ = isFine;
+  if (width != width_ || height != height_) {
+    width_ = width, height_ = height, hasFine_ = false;
+    glBindTexture(GL_TEXTURE_2D, color_.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glBindFramebuffer(GL_FRAMEBUFFER, plain_.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.id(), 0);
+    addRoom(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, 1);
+  }
+  if (!isFine || hasFine_) return;
+  hasFine_ = true;
   glBindFramebuffer(GL_FRAMEBUFFER, fine_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, fineColor_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, fineDepth_.id());
+  addRoom(fineColor_, GL_RGBA8, GL_COLOR_ATTACHMENT0, kFineness);
+  addRoom(fineDepth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, kFineness);
+}
+
+void Frame::addRoom(const GpuObject& buffer, unsigned format, unsigned attachment, int fineness) const {
+  glBindRenderbuffer(GL_RENDERBUFFER, buffer.id());
+  glRenderbufferStorage(GL_RENDERBUFFER, format, fineness * width_, fineness * height_);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer.id());
 }
 
 void Frame::bind() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, samples_ > 1 ? fine_.id() : plain_.id());
-  glViewport(0, 0, width_, height_);
+  glBindFramebuffer(GL_FRAMEBUFFER, isFine_ ? fine_.id() : plain_.id());
+  glViewport(0, 0, fineness() * width_, fineness() * height_);
 }
 
 void Frame::resolve() const {
-  if (samples_ <= 1) return;
+  if (!isFine_) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, fine_.id());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, plain_.id());
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  // Between two pixels each way: the mean of four.
+  glBlitFramebuffer(0, 0, kFineness * width_, kFineness * height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
 std::vector<unsigned char> readPixels(unsigned framebuffer, int width, int height) {

@@ -5,6 +5,8 @@
 #include "app/view/render/gpu.h"
 #include "app/view/render/surface.h"
 
+#include <vector>
+
 namespace pectora::view {
 
 /// How a surface looks.
@@ -47,11 +49,19 @@ struct ClipPlane {
 class Renderer {
  public:
   Renderer();
+  /// `pointSize` in pixels of the picture.
   void draw(const Frame& frame, const Camera& camera, const std::vector<Item>& items, const ClipPlane& clip, float pointSize) const;
 
  private:
-  void drawItem(const Program& program, const Item& item) const;
-  Program plain_, cut_;
+  /// What is the same for all items of a picture.
+  struct View {
+    Matrix4 matrix;
+    Vec3 eye, key;   // key: the way to the key light
+    ClipPlane clip;
+    float pointSize;
+  };
+  void drawItem(const View& view, const Item& item) const;
+  std::vector<Program> programs_;   // one for each way that a surface can look
 };
 
 }  // namespace pectora::view

@@ -36,7 +36,7 @@ void Viewport::draw(const Renderer& renderer, const std::vector<Item>& items, co
   const Matrix4 matrix = camera.matrix();
   const bool isNew = version != drawnVersion_ || matrix != drawnMatrix_ || size_.x != drawnSize_.x || size_.y != drawnSize_.y;
   if (isNew || isCoarse_) {
-    frame_.resize(int(size_.x), int(size_.y), isNew ? 1 : 4);
+    frame_.resize(int(size_.x), int(size_.y), !isNew);
     renderer.draw(frame_, camera, items, clip, kPointSize * scale);
     drawnVersion_ = version, drawnMatrix_ = matrix, drawnSize_ = size_;
     isCoarse_ = isNew;

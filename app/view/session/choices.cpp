@@ -20,8 +20,10 @@ Step firstDifference(const Choices& a, const Choices& b) {
   if (a.model != b.model || a.effects != b.effects) return Step::scene;
   if (a.planner != b.planner) return Step::plan;
   if (a.solver != b.solver) return Step::motion;
-  if (a.scanPath != b.scanPath) return Step::scan;
-  if (!same(a.ctLandmarks, b.ctLandmarks) || !same(a.scanLandmarks, b.scanLandmarks) || a.registration != b.registration || a.usesIcp != b.usesIcp)
+  if (a.scan != b.scan) return Step::scan;
+  // The comparison begins where the landmarks brought the scan, so both are made together.
+  if (!same(a.ctLandmarks, b.ctLandmarks) || !same(a.scanLandmarks, b.scanLandmarks) || a.registration != b.registration || a.usesIcp != b.usesIcp ||
+      a.icp != b.icp || a.comparer != b.comparer)
     return Step::registration;
   return Step::nothing;
 }
@@ -50,7 +52,9 @@ void assign(Settings& settings, const std::string& name, SettingValue value) {
       old = std::move(value);
       return;
     }
-  settings.emplace_back(name, std::move(value));
+  // By name, as a script's table has no order of its own.
+  const auto next = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.first > name; });
+  settings.emplace(next, name, std::move(value));
 }
 
 void reset(Settings& settings, const std::string& name) {

@@ -31,10 +31,13 @@ struct Choices {
   PluginChoice segmenter{"segmenter.thorax"}, splines{"splines.cartilage"}, model{"model.two_layer"}, planner{"planner.nuss"}, solver;
   std::vector<PluginChoice> corrections;      ///< of the anatomy by hand, in order
   std::vector<EffectChoice> effects;
-  std::string scanPath;                       ///< a scan after the operation; empty: the phantom's own, or none
+  PluginChoice scan{"scan.file"};             ///< of a scan after the operation; without a path the phantom's own, or none
   Landmarks ctLandmarks, scanLandmarks;       ///< placed by hand; none: the phantom's own
-  std::string registration = "rigid";
+  PluginChoice registration{"register.landmarks"}, icp{"register.icp"}, comparer{"comparer.surface", {{"name", std::string("scan_vs_simulated")}}};
   bool usesIcp = true;
+
+  /// Whether a scan was opened.
+  bool hasScan() const { return !scan.settings.empty(); }
 };
 
 /// The steps from a file to a comparison, in the order in which they depend on each other.

@@ -9,7 +9,7 @@
 namespace pectora::view {
 
 /// What a solver sees of the program.
-class LiveHost final : public Host {
+class LiveHost : public Host {
  public:
   LiveHost(std::string stage, Messages& messages, const std::atomic<bool>& cancel) : stage_(std::move(stage)), messages_(messages), cancel_(cancel) {}
   void progress(double fraction, const std::string& what) override { messages_.progress(stage_, fraction, what); }
@@ -23,6 +23,22 @@ class LiveHost final : public Host {
   std::string stage_;
   Messages& messages_;
   const std::atomic<bool>& cancel_;
+};
+
+/// What the solver sees that follows a hand. A hand may move on sooner than a solver makes a step: it is stopped only when it has shown
+/// one, as otherwise the skin would stay where it is as long as the hand moves.
+class FollowingHost final : public LiveHost {
+ public:
+  using LiveHost::LiveHost;
+  bool cancelled() const override { return shown_ >= 2 && LiveHost::cancelled(); }   // solvers show where they begin, too
+  void preview(const NodeVectors& positions) override {
+    LiveHost::preview(positions);
+    ++shown_;
+    checkCancel();
+  }
+
+ private:
+  int shown_ = 0;
 };
 
 /// A solver with settings of its own. Throws Error.

@@ -67,7 +67,7 @@ void Pipeline::runFrom(Step first, Step last) {
   clearFrom(Step::anatomy, results_.segmented);
   clearFrom(Step::anatomy, results_.anatomy);
   clearFrom(Step::cage, results_.cage);
-  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, live_.forget(), results_.comparison = results_.aligned = {};
+  if (first <= Step::cage) results_.scene = results_.plan = results_.motion = {}, results_.skin = nullptr, live_.forget(), results_.comparison = results_.aligned = {}, results_.scanDistances = nullptr;
   for (Step step = first; step <= last && step < Step::nothing; step = next(step)) {
     present_ = step;
     try {
@@ -105,7 +105,8 @@ WarmSolve& Pipeline::warm() {
 
 void Pipeline::solveLive() {
   present_ = Step::motion;
-  LiveHost host(done_.solver.id, messages_, cancel_);
+  FollowingHost host(done_.solver.id, messages_, cancel_);
+  const Clock::time_point begun = Clock::now();
   try {
     WarmSolve& solve = warm();
     if (!live_.isWarm()) {
@@ -113,6 +114,7 @@ void Pipeline::solveLive() {
       return;
     }
     showsWay_ = true;
+    lastSeen_ = {};   // of this solve alone: another's nodes may be others
     const auto motion = solve.solve(*results_.planValue(), host);
     results_.motion = {motion, nullptr};
     results_.skin = std::shared_ptr<const std::vector<Vec3>>(motion, &motion->outer);
@@ -120,6 +122,7 @@ void Pipeline::solveLive() {
     results_.isLive = true;
     results_.settled = -1;
     results_.liveMs = msSince(since_);
+    results_.solveMs = msSince(begun);
     valid_ = Step::scan;
     show();
   } catch (const Cancelled&) {
@@ -154,8 +157,8 @@ void Pipeline::solveFromRest() {
 }
 
 void Pipeline::preview(const NodeVectors& positions) {
-  // A display shows no more than about thirty states a second.
-  if (!showsWay_ || msSince(shown_) < 30 || !results_.sceneValue()) return;
+  // A display shows no more than about thirty states a second; the last one before the hand moves on is where it goes on from.
+  if (!showsWay_ || (msSince(shown_) < 30 && !cancel_) || !results_.sceneValue()) return;
   shown_ = Clock::now();
   const std::size_t count = std::size_t(results_.sceneValue()->points());
   lastSeen_ = positions;

@@ -20,10 +20,12 @@ struct Results {
   Handle before, after, barMesh;   ///< of a result folder
   Handle phantomScan, phantomCtLandmarks, phantomScanLandmarks;
   Handle scan, aligned, byLandmarks, byIcp, comparison;
+  std::shared_ptr<const std::vector<double>> scanDistances;   ///< as in scan_distances.h, of the comparison; null if there is none
   std::shared_ptr<const std::vector<Vec3>> skin;   ///< of the scene's points; where the motion is on its way, or has ended
   bool isPreview = false;                          ///< the skin is still on its way
   bool isLive = false;                             ///< the motion began where the last one ended; not yet as the script does
   double liveMs = 0;                               ///< from the change to the skin, of the last live solve
+  double solveMs = 0;                              ///< of these the solver's, with the scene's making if that was new
   double settled = -1;                             ///< the largest distance between the live skin and the script's, mm; -1: not known
   std::vector<EffectUse> effects;
   std::string error;                               ///< why there is no more than this

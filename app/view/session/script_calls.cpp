@@ -13,9 +13,13 @@ Settings sorted(Settings settings) {
 
 std::string stageOf(const std::string& id) { return id.substr(0, id.find('.')); }
 
+bool isMadeBy(const std::vector<Handle>& handles, const std::string& stage) {
+  return !handles.empty() && handles.front().record && stageOf(handles.front().record->stage) == stage;
+}
+
 // Landmarks that a script brings; the phantom's own need not be placed.
 Landmarks placedBy(const std::vector<Handle>& handles) {
-  if (handles.empty() || (handles.front().record && stageOf(handles.front().record->stage) == "loader")) return {};
+  if (handles.empty() || isMadeBy(handles, "loader")) return {};
   const auto* landmarks = dynamic_cast<const Landmarks*>(handles.front().value.get());
   return landmarks ? *landmarks : Landmarks{};
 }
@@ -32,8 +36,9 @@ void ScriptCalls::starting(const std::string& id, const Settings& settings, cons
   else if (stage == "splines") choices_.splines = call;
   else if (stage == "planner") choices_.planner = call, hasPlan_ = true;
   else if (stage == "solver") choices_.solver = call, hasSolve_ = true;
-  else if (id == "scan.file") choices_.scanPath = std::get<std::string>(*find(settings, "path"));
-  else if (id == "register.icp") choices_.usesIcp = true;
+  else if (id == "scan.file") choices_.scan = call;
+  else if (id == "register.icp") choices_.icp = call, choices_.usesIcp = true;
+  else if (id == "comparer.surface" && isMadeBy(inputs.at(0), "register")) choices_.comparer = call;   // of several the scan's
   else if (stage == "model") {
     choices_.model = call;
     choices_.effects.clear();
@@ -43,8 +48,8 @@ void ScriptCalls::starting(const std::string& id, const Settings& settings, cons
         if (const auto* effect = dynamic_cast<const EffectCall*>(handle.value.get())) choices_.effects.push_back({{effect->id, sorted(effect->settings)}, true});
   } else if (id == "register.landmarks") {
     hasRegistration_ = true;
+    choices_.registration = call;
     choices_.usesIcp = false;   // unless it is called, too
-    if (const SettingValue* method = find(settings, "method")) choices_.registration = std::get<std::string>(*method);
     choices_.scanLandmarks = placedBy(inputs.at(1));
     choices_.ctLandmarks = placedBy(inputs.at(2));
   }

@@ -58,17 +58,17 @@ std::string landmarkCall(const Landmarks& landmarks) {
 std::string comparisonText(const Choices& c, const std::string& before, const std::string& after, const std::string& more) {
   const bool hasPhantom = c.source == Source::phantom;
   const bool hasLandmarks = c.ctLandmarks.points.size() >= 3 && c.scanLandmarks.points.size() >= 3;
-  if (!(hasPhantom || !c.scanPath.empty()) || !(hasLandmarks || (hasPhantom && c.scanPath.empty()))) return "";
-  std::string text = fmt::format("local scanned = {}\n", c.scanPath.empty() ? "phantom_scan" : "scan.file{ path = " + quoted(c.scanPath) + " }");
+  if (!(hasPhantom || c.hasScan()) || !(hasLandmarks || (hasPhantom && !c.hasScan()))) return "";
+  std::string text = fmt::format("local scanned = {}\n", c.hasScan() ? c.scan.id + table(c.scan.settings) : "phantom_scan");
   if (hasLandmarks) {
     text += fmt::format("local on_scan = {}\n", landmarkCall(c.scanLandmarks));
     text += fmt::format("local on_ct = {}\n", landmarkCall(c.ctLandmarks));
   } else {
     text += "local on_scan, on_ct = scan_landmarks, ct_landmarks\n";
   }
-  text += fmt::format("local aligned, by_landmarks =\n  register.landmarks(scanned, on_scan, on_ct, {{ method = {} }})\n", quoted(c.registration));
-  if (c.usesIcp) text += fmt::format("local by_icp\naligned, by_icp = register.icp(aligned, {}, {})\n", before, after);
-  return text + fmt::format("local comparison = comparer.surface(aligned, {}, {{\n  name = \"scan_vs_simulated\", unchanged = {}{} }})\n\n", after, before, more);
+  text += fmt::format("local aligned, by_landmarks =\n  {}(scanned, on_scan, on_ct{})\n", c.registration.id, lastArgument(c.registration.settings));
+  if (c.usesIcp) text += fmt::format("local by_icp\naligned, by_icp = {}(aligned, {}, {}{})\n", c.icp.id, before, after, lastArgument(c.icp.settings));
+  return text + fmt::format("local comparison = {}(aligned, {}, {{\n  {}, unchanged = {}{} }})\n\n", c.comparer.id, after, fields(c.comparer.settings), before, more);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "app/view/session/steps.h"
 
+#include "app/view/session/scan_distances.h"
+
 #include <filesystem>
 
 namespace pectora::view {
@@ -46,7 +48,7 @@ void registerScan(const Choices& choices, Runner& runner, Results& r) {
   r.aligned = r.byLandmarks = r.byIcp = {};
   if (!r.scan.value) return;
   Handle onScan = r.phantomScanLandmarks, onCt = r.phantomCtLandmarks;
-  if (!choices.scanPath.empty()) onScan = onCt = {};
+  if (choices.hasScan()) onScan = onCt = {};
   const auto placed = [&](const Landmarks& landmarks) {
     std::vector<std::string> names;
     std::vector<double> positions;
@@ -59,12 +61,13 @@ void registerScan(const Choices& choices, Runner& runner, Results& r) {
   if (choices.scanLandmarks.points.size() >= 3 && choices.ctLandmarks.points.size() >= 3)
     onScan = placed(choices.scanLandmarks), onCt = placed(choices.ctLandmarks);
   if (!onScan.value || !onCt.value) return;
-  const auto outputs = runner.run("register.landmarks", {{"method", choices.registration}}, {{r.scan}, {onScan}, {onCt}});
+  const auto outputs = runner.run(choices.registration.id, choices.registration.settings, {{r.scan}, {onScan}, {onCt}});
   r.aligned = outputs[0], r.byLandmarks = outputs[1];
 }
 
 void compareSurfaces(const Choices& choices, Runner& runner, Results& r) {
   r.comparison = {};
+  r.scanDistances = nullptr;
   if (!r.aligned.value) return;
   // The skin before and after, as a script takes them out of the motion.
   Handle before = r.before, after = r.after;
@@ -76,10 +79,11 @@ void compareSurfaces(const Choices& choices, Runner& runner, Results& r) {
       if (name == "copied") copied = {{part, r.motion.record}};
     }
   if (choices.usesIcp) {
-    const auto outputs = runner.run("register.icp", {}, {{r.aligned}, {before}, {after}});
+    const auto outputs = runner.run(choices.icp.id, choices.icp.settings, {{r.aligned}, {before}, {after}});
     r.aligned = outputs[0], r.byIcp = outputs[1];
   }
-  r.comparison = runner.run("comparer.surface", {{"name", std::string("scan_vs_simulated")}}, {{r.aligned}, {after}, {before}, copied})[0];
+  r.comparison = runner.run(choices.comparer.id, choices.comparer.settings, {{r.aligned}, {after}, {before}, copied})[0];
+  if (const Mesh* skin = Results::as<Mesh>(after)) r.scanDistances = std::make_shared<const std::vector<double>>(scanDistances(*r.comparisonValue(), skin->points));
 }
 
 }  // namespace
@@ -95,7 +99,7 @@ void runStep(Step step, const Choices& choices, Runner& runner, Results& r) {
     case Step::scene: makeScene(choices, runner, r); break;
     case Step::plan: r.plan = runner.run(choices.planner.id, choices.planner.settings, {{r.cage}})[0]; break;
     case Step::motion: break;
-    case Step::scan: r.scan = !choices.scanPath.empty() ? runner.run("scan.file", {{"path", choices.scanPath}}, {})[0] : r.phantomScan; break;
+    case Step::scan: r.scan = choices.hasScan() ? runner.run(choices.scan.id, choices.scan.settings, {})[0] : r.phantomScan; break;
     case Step::registration: registerScan(choices, runner, r); break;
     case Step::comparison: compareSurfaces(choices, runner, r); break;
     case Step::nothing: break;

@@ -1,5 +1,6 @@
 #include "plugins/planner/nuss/motion.h"
 
+#include "kernel/physics/workers.h"
 #include "kernel/stage/error.h"
 
 #include <fmt/format.h>
@@ -84,8 +85,8 @@ Vec3 deepestOfPit(const Anatomy& anatomy) {
 }
 
 std::vector<std::vector<MovedCartilage>> motionFrames(const RibCage& cage, const RigidMotion& motion, int count) {
-  std::vector<std::vector<MovedCartilage>> frames;
-  for (int f = 0; f < count; ++f) frames.push_back(followSternum(cage, motion.part(double(f) / (count - 1))));
+  std::vector<std::vector<MovedCartilage>> frames(static_cast<std::size_t>(count));
+  parallelFor(frames.size(), [&](std::size_t f) { frames[f] = followSternum(cage, motion.part(double(f) / (count - 1))); });
   return frames;
 }
 

@@ -23,12 +23,12 @@ struct Desktop {
   std::string home;
   ImGuiHolder imgui;
   std::unique_ptr<Target> target;
-  Registry registry{{PECTORA_PLUGINS}};
+  Registry registry;
   App app;
   Hand hand{app};
 
-  explicit Desktop(const std::string& name, int width = 1280, int height = 800, float scale = 1)
-      : home(ownHome(name)), target(makeOffscreen(width, height, scale)), app(*target, registry, [] {}) {}
+  explicit Desktop(const std::string& name, int width = 1280, int height = 800, float scale = 1, std::vector<std::string> plugins = {PECTORA_PLUGINS})
+      : home(ownHome(name)), target(makeOffscreen(width, height, scale)), registry(std::move(plugins)), app(*target, registry, [] {}) {}
 
   Context& context() { return app.context(); }
   const Results& results() { return *app.context().results; }

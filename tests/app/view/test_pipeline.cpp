@@ -126,10 +126,19 @@ TEST(Pipeline, MeasuresWhatEachEffectChanges) {
   std::vector<EffectWorth> worths;
   s.worker.run("effects", [&](Pipeline& pipeline) { worths = pipeline.measureEffects([](double, const std::string&) {}); });
   s.wait();
-  ASSERT_EQ(worths.size(), 7u);
+  ASSERT_EQ(worths.size(), 15u) << "every effect that there is";
+  EXPECT_EQ(std::count_if(worths.begin(), worths.end(), [](const EffectWorth& w) { return w.isOn; }), 7);
   const auto of = [&](const std::string& id) { return *std::find_if(worths.begin(), worths.end(), [&](const EffectWorth& w) { return w.id == id; }); };
   EXPECT_GT(of("effect.cross").largest, of("effect.bend").largest);
   for (const EffectWorth& w : worths) EXPECT_LE(w.rms, w.largest) << w.id;
+  EXPECT_NE(of("effect.attachment").refused, "") << "nothing else holds the wall";
+  EXPECT_NE(of("effect.tissue").idle, "") << "a lattice has no solid cells";
+  EXPECT_GT(of("effect.volume").largest, 0.1) << "not in the scene, and would change it";
+  // What taking it in was told to change is what it changes.
+  const auto before = s.worker.results();
+  s.choices.effects.push_back({{"effect.volume"}, true});
+  const auto after = s.after(s.choices);
+  EXPECT_NEAR(largestDistance(*before->skin, *after->skin), of("effect.volume").largest, 0.2) << "both have come to rest, but from different sides";
 }
 
 TEST(Pipeline, ConsoleSeesTheResultsAndPresetsComeBack) {
@@ -164,8 +173,11 @@ TEST(Pipeline, OpensTheScriptThatTheWindowShowsAsWhatTheWindowShowed) {
   assign(s.choices.effects[4].plugin.settings, "youngs_modulus", 33.0);
   s.choices.effects.erase(s.choices.effects.begin() + 2);
   s.choices.effects.push_back({{"effect.volume"}, true});
-  s.choices.registration = "similarity";
-  s.choices.usesIcp = false;
+  assign(s.choices.registration.settings, "method", std::string("similarity"));
+  assign(s.choices.icp.settings, "overlap", 0.9);
+  assign(s.choices.comparer.settings, "bin_width", 0.25);
+  assign(s.choices.segmenter.settings, "pleura_depth", 8.0);
+  assign(s.choices.splines.settings, "control_spacing", 22.0);
   // As if they had been placed by hand, a millimetre beside the phantom's own.
   const auto own = s.after(s.choices);
   s.choices.ctLandmarks.points = Results::as<Landmarks>(own->phantomCtLandmarks)->points;

@@ -87,7 +87,7 @@ TEST(Renderer, CutsWhatLiesBeforeThePlaneAndOnlyWhereThatIsAskedFor) {
   GpuSurface gpu;
   gpu.upload(ball({0, 0, 0}, 50));
   Frame frame;
-  frame.resize(200, 200, 1);
+  frame.resize(200, 200, false);
   Camera camera;
   camera.frame({}, 60);
   // Pixels that are red on the patient's right and left: the ball is, the background is not.

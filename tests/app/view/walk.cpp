@@ -88,6 +88,8 @@ Walk walkThrough(App& app, Hand& hand, const Target& target, const std::string& 
   walk.lifted = target.pixels();
   hand.control('z');
   rested();
+  EXPECT_TRUE(context.results->planValue()) << "one step back, and no more";
+  if (!context.results->planValue()) return walk;
   EXPECT_EQ(context.results->planValue()->lift(), liftBefore);
   EXPECT_EQ(largestDistance(skin(), first), 0) << "settled skins do not depend on what came before";
 

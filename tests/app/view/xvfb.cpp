@@ -4,6 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
@@ -40,9 +42,12 @@ Xvfb::~Xvfb() {
   waitpid(process_, nullptr, 0);
 }
 
-void DisplayHand::act(const std::string& words) {
+void DisplayHand::act(const std::string& words, const std::function<bool()>& isSeen) {
   if (std::system(("xdotool " + words).c_str()) != 0) throw std::runtime_error("xdotool " + words);
-  frames(3);
+  using Clock = std::chrono::steady_clock;
+  for (const auto start = Clock::now(); !isSeen(); step())
+    if (Clock::now() - start > std::chrono::minutes(2)) throw std::runtime_error("the window did not see: xdotool " + words);
+  frames(2);
 }
 
 void DisplayHand::step() {
@@ -50,23 +55,37 @@ void DisplayHand::step() {
   app_.frame();
 }
 
-void DisplayHand::moveTo(ImVec2 at) { act("mousemove " + std::to_string(int(at.x + 0.5f)) + " " + std::to_string(int(at.y + 0.5f))); }
-void DisplayHand::press(bool isDown) { act(isDown ? "mousedown 1" : "mouseup 1"); }
+void DisplayHand::moveTo(ImVec2 at) {
+  const ImVec2 whole{std::floor(at.x + 0.5f), std::floor(at.y + 0.5f)};
+  act("mousemove " + std::to_string(int(whole.x)) + " " + std::to_string(int(whole.y)), [&] {
+    const ImVec2 now = ImGui::GetIO().MousePos;
+    return now.x == whole.x && now.y == whole.y;
+  });
+}
+
+void DisplayHand::press(bool isDown) {
+  act(isDown ? "mousedown 1" : "mouseup 1", [&] { return ImGui::GetIO().MouseDown[0] == isDown; });
+}
 
 void DisplayHand::type(const std::string& text, bool enter) {
-  act("type --delay 25 '" + text + "'");
-  if (!enter) return;
-  act("keydown Return");
-  act("keyup Return");
+  // Keys come in the order in which they were pressed: when the last one is seen, so is the text.
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto isDown = [&] { return enter ? io.KeysDown[io.KeyMap[ImGuiKey_Enter]] : io.KeyShift; };
+  const std::string last = enter ? "Return" : "Shift_L";
+  act("type --delay 25 '" + text + "'", [] { return true; });
+  act("keydown " + last, isDown);
+  act("keyup " + last, [&] { return !isDown(); });
 }
 
 void DisplayHand::control(char letter) {
   // One by one: a key that goes down and up between two frames is not seen.
-  const std::string key(1, letter);
-  act("keydown Control_L");
-  act("keydown " + key);
-  act("keyup " + key);
-  act("keyup Control_L");
+  const ImGuiIO& io = ImGui::GetIO();
+  const std::string name(1, letter);
+  const int key = keyOf(letter);
+  act("keydown Control_L", [&] { return io.KeyCtrl; });
+  act("keydown " + name, [&] { return io.KeysDown[key]; });
+  act("keyup " + name, [&] { return !io.KeysDown[key]; });
+  act("keyup Control_L", [&] { return !io.KeyCtrl; });
 }
 
 }  // namespace pectora::view

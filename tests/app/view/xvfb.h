@@ -5,6 +5,8 @@
 
 #include <sys/types.h>
 
+#include <functional>
+
 namespace pectora::view {
 
 /// Starts Xvfb on a free display and sets DISPLAY to it; ends it. One at a time.
@@ -19,7 +21,8 @@ class Xvfb {
   pid_t process_ = 0;
 };
 
-/// Moves the pointer, presses its button and types by xdotool: what the window sees comes from the X server.
+/// Moves the pointer, presses its button and types by xdotool: what the window sees comes from the X server. Each deed is done when the
+/// window has seen it, however long that takes a busy machine.
 class DisplayHand final : public Hand {
  public:
   DisplayHand(App& app, Target& target) : Hand(app), target_(target) {}
@@ -32,7 +35,7 @@ class DisplayHand final : public Hand {
   void press(bool isDown) override;
 
  private:
-  void act(const std::string& words);
+  void act(const std::string& words, const std::function<bool()>& isSeen);
   Target& target_;
 };
 
