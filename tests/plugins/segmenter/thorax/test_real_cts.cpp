@@ -135,6 +135,17 @@ TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
     }
 }
 
+TEST(RealCts, OfAWholeThoraxHasRibsOfALengthOnBothSides) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // Their fronts fade; a rib that ends where it fades ends early, on one side by more than on the other.
+  for (int number = 3; number <= 8; ++number) {
+    const Rib *right = anatomy->rib(Side::right, number), *left = anatomy->rib(Side::left, number);
+    ASSERT_TRUE(right && left) << number;
+    EXPECT_NEAR(polylineLength(right->centerline) / polylineLength(left->centerline), 1, 0.07) << number;
+  }
+}
+
 TEST(RealCts, OfThickSlicesSaysSo) {
   const auto anatomy = anatomyOf("acrin_flt_013");
   if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";

@@ -1,6 +1,7 @@
 #include "solids.h"
 
 #include "kernel/value/curve.h"
+#include "plugins/segmenter/thorax/rib_fade.h"
 #include "plugins/segmenter/thorax/ribs.h"
 
 #include <gtest/gtest.h>
@@ -114,6 +115,23 @@ TEST(CutAcross, PartsTwoRibsThatTouch) {
   ASSERT_TRUE(cut.isFound);
   EXPECT_NEAR(cut.centre.x, 30, 0.2);
   EXPECT_NEAR(cut.centre.y, 24, 0.5);
+}
+
+TEST(RibFade, FollowsARibThatFadesTowardsItsEnd) {
+  // By 2 % of the usual brightness with every cut, from 24 cuts before the end.
+  RibFade fade({}, 400);
+  for (double part = 1; part > 0.56; part -= 0.02) {
+    ASSERT_TRUE(fade.goesOn(400 * part)) << part;
+    fade.add(400 * part);
+  }
+  EXPECT_FALSE(fade.goesOn(400 * 0.54)) << "too faint for a rib";
+  EXPECT_FALSE(fade.goesOn(400 * 0.70)) << "brighter again";
+}
+
+TEST(RibFade, StopsAtAStepDown) {
+  const RibFade fade(std::vector<double>(20, 400.0), 400);
+  EXPECT_TRUE(fade.goesOn(0.9 * 400));
+  EXPECT_FALSE(fade.goesOn(0.8 * 400));
 }
 
 /// Ribs of both sides at these heights (local z of their backs).
