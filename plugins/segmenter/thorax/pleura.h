@@ -72,7 +72,8 @@ struct PleuraSettings {
 };
 
 /// The inner wall in slices firstSlice to lastSlice: radius[(slice - firstSlice) * kAngles + n]. A first surface goes
-/// through the bony wall alone (or, if there is none, through all lung); lung within `deepestMm` of it, or outside it,
+/// through the bony wall (or, if there is none, through all lung) and the backs of the cartilages that are seen near it; lung within `deepestMm` of it, or outside it,
+/// (four times that where no bone or cartilage is within 25 mm, so that nothing but lung shows the wall)
 /// then joins it with a greater weight, and so four times more from the new surface, but never further inside the first one than
 /// twice that, and nowhere that the lung stays behind the ribs (effusion, fat): there the bony wall stands. The last surface is cut back to
 /// `leastThicknessMm` inside the skin.

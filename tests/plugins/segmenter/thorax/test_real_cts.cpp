@@ -146,6 +146,26 @@ TEST(RealCts, OfAWholeThoraxHasRibsOfALengthOnBothSides) {
   }
 }
 
+TEST(RealCts, OfAWholeThoraxHasAThinWallWhereNoLungShowsItBelowTheDiaphragm) {
+  // In front, below the breasts, where no lung shows the wall: between the levels of the seventh and the ninth rib's front end.
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  const double low = anatomy->rib(Side::left, 9)->centerline.back().z, high = anatomy->rib(Side::right, 7)->centerline.back().z;
+  int levels = 0;
+  for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
+    const LayerSlice &skin = anatomy->skin[n], &pleura = anatomy->pleura[n];
+    if (skin.z < low || skin.z > high) continue;
+    ++levels;
+    for (const Vec3& p : pleura.points) {
+      if (std::abs(p.x - pleura.points[pleura.points.size() / 2].x) > 90) continue;
+      double nearest = 1e300;
+      for (const Vec3& q : skin.points) nearest = std::min(nearest, distance(p, q));
+      EXPECT_LT(nearest, 30) << "at x " << p.x << ", z " << p.z;   // 15 mm of cartilage and muscle, 15 of fat at the most
+    }
+  }
+  EXPECT_GT(levels, 10);
+}
+
 TEST(RealCts, OfThickSlicesSaysSo) {
   const auto anatomy = anatomyOf("acrin_flt_013");
   if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";
