@@ -68,8 +68,11 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
       if (rib.side != side) continue;
       EXPECT_LT(polylineLength(rib.centerline), 420) << rib.number;   // the longest rib of an adult is about 330 mm
       if (rib.number == 0) continue;
-      if (above) {
+      // By their backs; those that the CT's upper border cuts, by their fronts.
+      if (above && rib.reachesVertebra && above->reachesVertebra) {
         EXPECT_LT(rib.centerline.front().z, above->centerline.front().z) << sideName(side) << rib.number;
+      } else if (above) {
+        EXPECT_LT(rib.centerline.back().z, above->centerline.back().z) << sideName(side) << rib.number;
       }
       above = &rib;
     }
@@ -164,6 +167,17 @@ TEST(RealCts, OfAWholeThoraxHasAThinWallWhereNoLungShowsItBelowTheDiaphragm) {
     }
   }
   EXPECT_GT(levels, 10);
+}
+
+TEST(RealCts, ThatShowTheAngleOfLouisButNeitherTheFirstNorTheLastRibAreCountedFromTheSecond) {
+  const auto anatomy = anatomyOf("acrin_flt_013");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";
+  // By eye: the second rib ends beside the joint, at slice 41 of 4 mm; below it all to the tenth are in view on both sides.
+  for (Side side : {Side::right, Side::left}) {
+    for (int number = 2; number <= 10; ++number) EXPECT_NE(anatomy->rib(side, number), nullptr) << sideName(side) << number;
+    ASSERT_NE(anatomy->rib(side, 2), nullptr);
+    EXPECT_NEAR(anatomy->rib(side, 2)->centerline.back().z, anatomy->sternum.manubriosternalJoint.z, 12);
+  }
 }
 
 TEST(RealCts, OfThickSlicesSaysSo) {

@@ -179,6 +179,17 @@ TEST(NumberRibs, GivesNoNumbersIfNeitherEndIsInView) {
   EXPECT_EQ(numbers(ribs, Side::left), (std::vector<int>{0, 0, 0}));
 }
 
+TEST(NumberRibs, CountsFromTheRibThatRunsToTheAngleOfLouisIfNeitherEndIsInView) {
+  // Fronts 30 mm below the backs and 80 mm before them, falling by 6 mm in their last 24; the notches are 20 mm further inwards.
+  std::vector<FoundRib> ribs = ladder({190, 165, 140}, {191, 166, 141});
+  for (FoundRib& rib : ribs) rib.body.line = {{0, 120, rib.backHeight}, {0, 64, rib.backHeight - 24}, {0, 40, rib.backHeight - 30}}, rib.body.reachesJunction = true;
+  const auto notches = [](double z) { return SecondNotches{Vec3{0, 20, z}, Vec3{0, 20, z}}; };
+  EXPECT_EQ(numberRibs(ribs, 120, 195, notches(133)), Counting::fromSternum);
+  EXPECT_EQ(numbers(ribs, Side::right), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(numbers(ribs, Side::left), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(numberRibs(ribs, 120, 195, notches(120)), Counting::none) << "midway between two ribs";
+}
+
 TEST(NumberRibs, OfNothingOrOneRibIsNone) {
   std::vector<FoundRib> none, one = ladder({100}, {});
   EXPECT_EQ(numberRibs(none, 0, 300), Counting::none);
