@@ -205,7 +205,7 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
   // The surface of the bones, and again with the cartilages that it leads to.
   const auto fitReference = [&](const UsualWall& usual) { return fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness); };
   std::vector<double> radius = fitReference(usualWall(reference, all, outside, firstSlice, body.spacing.z));
-  const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, radius, firstSlice);
+  const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, firstSlice);
   bony.insert(bony.end(), cartilages.begin(), cartilages.end());
   reference.insert(reference.end(), cartilages.begin(), cartilages.end());
   const UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);

@@ -112,6 +112,18 @@ TEST_P(RealCt, HasAWallAsThickAsChestWallsAre) {
   }
 }
 
+TEST_P(RealCt, HasAnInnerWallThatDoesNotPassThroughTheSternum) {
+  // Where the sternum was outlined, in the middle half of its width.
+  for (const std::vector<Vec3>& contour : anatomy->sternum.contours)
+    for (const LayerSlice& pleura : anatomy->pleura) {
+      if (contour.empty() || std::abs(pleura.z - contour.front().z) > 0.01) continue;
+      const auto [right, left] = std::minmax_element(contour.begin(), contour.end(), [](Vec3 a, Vec3 b) { return a.x < b.x; });
+      const double middle = 0.5 * (right->x + left->x), half = 0.25 * (left->x - right->x);
+      for (const Vec3& p : pleura.points)
+        EXPECT_FALSE(std::abs(p.x - middle) < half && isInContour(contour, p)) << "at z " << p.z;
+    }
+}
+
 TEST_P(RealCt, TakesNeitherCouchNorBlanketForBone) {
   double back = -1e300;
   for (const SliceContour& c : anatomy->contours)
