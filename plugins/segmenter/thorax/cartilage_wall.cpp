@@ -14,6 +14,7 @@ constexpr double kShallowestMm = 6, kDeepestMm = 50, kThinnestMm = 4, kThickestM
 constexpr double kInsideMm = 10, kOutsideMm = 30;   // of the bony surface
 constexpr double kLungMm = 8;   // from lung behind it
 constexpr double kAlikeMm = 3;
+constexpr double kPleuraMm = 1, kWeight = 0.02;   // behind the cartilage; of a sample, so that the wall takes no ridges from them
 constexpr int kLeastAlike = 5;
 
 /// Radius of the inner surface of the outermost cartilage on a ray; -1 if there is none.
@@ -65,7 +66,7 @@ std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid,
       int alike = -1;   // without itself
       for (int dr = -1; dr <= 1; ++dr)
         for (int dn = -1; dn <= 1; ++dn) alike += std::abs(radius[std::size_t(row + dr) * angles + n + dn] - r) < kAlikeMm;
-      if (r > 0 && alike >= kLeastAlike) samples.push_back({double(n), double(firstSlice + row * stride), r, 1});
+      if (r > 0 && alike >= kLeastAlike) samples.push_back({double(n), double(firstSlice + row * stride), r - kPleuraMm, kWeight});
     }
   return samples;
 }
