@@ -27,6 +27,10 @@ std::vector<SliceContour> classifyBones(const Field& field, int slice, double bo
     if (s.slice == slice && s.isSeen) breastbone = &s;
 
   std::vector<SliceContour> result;
+  if (breastbone) {
+    result.push_back({.slice = slice, .structure = "sternum", .points = {}});
+    for (const Point2& p : breastbone->contour) result.back().points.push_back({p.x, p.y, z});
+  }
   for (Loop& loop : isoContours(plane, float(boneHu))) {
     for (Point2& p : loop) p = {(p.x + box.low[0]) * spacing.x, (p.y + box.low[1]) * spacing.y};
     const Shape shape = shapeOf(loop);
@@ -37,7 +41,7 @@ std::vector<SliceContour> classifyBones(const Field& field, int slice, double bo
     for (const Point2& p : loop) contour.points.push_back({p.x, p.y, z});
 
     const double fromColumn = std::hypot(c.x - spine.centre[slice].x, c.y - spine.centre[slice].y);
-    if (breastbone && isInside(breastbone->contour, c)) contour.structure = "sternum";
+    if (breastbone && isInside(breastbone->contour, c)) continue;
     // Around the middle of the column, or across it behind: at a disc the arch may be one with the ribs of both sides.
     const auto [right, left] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
     const bool isAcross = right->x < spine.centre[slice].x - kAcrossMm && left->x > spine.centre[slice].x + kAcrossMm && fromColumn < kVertebraMm;

@@ -1,5 +1,7 @@
 #include "plugins/segmenter/thorax/pleura.h"
 
+#include "plugins/segmenter/thorax/cartilage_wall.h"
+
 #include "kernel/physics/workers.h"
 
 #include <algorithm>
@@ -14,6 +16,8 @@ constexpr double kRayStepMm = 0.7;
 constexpr double kNeckMm = 45;        // of a rib, from the vertebra to where it joins the wall
 constexpr double kBonyStiffness = 0.5, kStiffness = 0.02;
 constexpr double kBoneWeight = 0.1;   // of a bony sample beside a sample of lung
+constexpr double kArcMm = 110 * PolarGrid::kStepDeg * kRadians;   // between rays at a usual radius
+constexpr double kAloneMm = 25, kAloneFactor = 4;   // where no bone or cartilage is so near, lung may lie so many times deeper
 
 /// Polar coordinates of a point about a slice's pole: angle index and radius.
 std::pair<double, double> polarOf(const PolarGrid& grid, int slice, Point2 p) {
@@ -32,6 +36,19 @@ double distanceTo(const std::vector<Point2>& line, Point2 p) {
     nearest = std::min(nearest, std::hypot(a.x + t * d.x - p.x, a.y + t * d.y - p.y));
   }
   return nearest;
+}
+
+/// Where no sample is within kAloneMm, around the chest and along it: indices as in findPleura.
+std::vector<char> farFrom(const std::vector<WallSample>& samples, int firstSlice, int slices, double sliceSpacing) {
+  constexpr int angles = PolarGrid::kAngles, reach = int(kAloneMm / kArcMm);
+  const int rows = int(kAloneMm / sliceSpacing);
+  std::vector<char> isFar(std::size_t(slices) * angles, 1);
+  for (const WallSample& sample : samples) {
+    const int s = int(std::lround(sample.slice)) - firstSlice, n = int(std::lround(sample.angleIndex));
+    for (int t = std::max(0, s - rows); t <= std::min(slices - 1, s + rows); ++t)
+      for (int m = std::max(0, n - reach); m <= std::min(angles - 1, n + reach); ++m) isFar[std::size_t(t) * angles + m] = 0;
+  }
+  return isFar;
 }
 
 }  // namespace
@@ -127,7 +144,6 @@ std::vector<WallSample> sternumWall(const std::vector<SternumSlice>& sternum, co
 std::vector<double> lungBehindRibs(const std::vector<WallSample>& ribs, const std::vector<std::vector<double>>& lung, int firstSlice,
                                    double sliceSpacing) {
   constexpr int angles = PolarGrid::kAngles;
-  constexpr double kArcMm = 110 * PolarGrid::kStepDeg * kRadians;   // between rays at a usual radius
   const int slices = int(lung.size());
   // Where both are known: the gap, and that it is known.
   std::vector<float> gap(std::size_t(slices) * angles, 0), known(gap.size(), 0);
@@ -186,9 +202,16 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
       for (int n = 0; n < angles; ++n)
         if (outside[s][n] > 0) reference.push_back({double(n), double(firstSlice + s), 0.75 * outside[s][n], 1});
   if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
+  // The surface of the bones, and again with the cartilages that it leads to.
+  const auto fitReference = [&](const UsualWall& usual) { return fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness); };
+  std::vector<double> radius = fitReference(usualWall(reference, all, outside, firstSlice, body.spacing.z));
+  const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, firstSlice);
+  bony.insert(bony.end(), cartilages.begin(), cartilages.end());
+  reference.insert(reference.end(), cartilages.begin(), cartilages.end());
   const UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
-  std::vector<double> radius = fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness);
+  radius = fitReference(usual);
   const std::vector<double> bonySurface = radius;
+  const std::vector<char> isAlone = farFrom(bony, firstSlice, slices, body.spacing.z);
   for (int round = 0; round < 5; ++round) {
     if (step) step(0.4 + 0.1 * round);
     std::vector<WallSample> samples;
@@ -196,7 +219,8 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
     for (const WallSample& sample : all) {
       const std::size_t at = std::size_t(sample.slice - firstSlice) * angles + std::size_t(sample.angleIndex);
       // Lung behind an effusion lies ever further in: the rounds may not follow it.
-      if (behind[at] > settings.effusionMm || sample.radius < radius[at] - settings.deepestMm || sample.radius < bonySurface[at] - 2 * settings.deepestMm) continue;
+      const double deepest = settings.deepestMm * (isAlone[at] ? kAloneFactor : 1);
+      if ((behind[at] > settings.effusionMm && !isAlone[at]) || sample.radius < radius[at] - deepest || sample.radius < bonySurface[at] - 2 * deepest) continue;
       samples.push_back(sample);
       hasLung[at] = 1;
     }

@@ -1,6 +1,7 @@
 #include "plugins/segmenter/thorax/rib_march.h"
 
 #include "kernel/value/curve.h"
+#include "plugins/segmenter/thorax/rib_fade.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ constexpr double kDistrustedFrontMm = 16, kDistrustedBackMm = 4;   // of the rou
 constexpr double kFarthestOffMm = 2.5;     // of a cut's centre from the rough line
 constexpr double kNeckMm = 24;
 constexpr double kSharpTurn = 0.8;          // cosine of 37 degrees
-constexpr double kBoneBrightness = 0.83;    // of a rib's usual one; calcified cartilage has no cortex
+constexpr double kLeastArea = 0.35;         // of a rib's usual one
 constexpr double kReferenceFromMm = 15, kReferenceToMm = 75;   // behind the front of the inner part, where that is taken
 constexpr double kSearchBackMm = 44;
 constexpr int kLongestMergeMm = 30;
@@ -165,12 +166,17 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     smoothLine(line);
   }
 
-  // Not into calcified cartilage: the line ends before three steps of dim bone in its front part.
-  std::size_t dim = 0;
+  // Not into calcified cartilage: the line ends before three steps in its front part that are not the rib's.
+  std::size_t others = 0;
+  RibFade fade({}, usualHu);
+  const auto isLikeRib = [&](const Cut& cut) { return cut.isFound && cut.areaMm2 > kLeastArea * usual && fade.goesOn(cut.meanHu); };
   for (std::size_t n = line.size() - std::min(line.size(), std::size_t(kSearchBackMm / kStepMm)); n < line.size(); ++n) {
     const Cut cut = cutAcross(field, line[n], directionAt(line, n), boneHu, usual);
-    dim = cut.isFound && cut.meanHu < kBoneBrightness * usualHu ? dim + 1 : 0;
-    if (dim < 3 || n < 8) continue;
+    if (cut.isMerged) continue;
+    const bool isRib = isLikeRib(cut);
+    others = isRib ? 0 : others + 1;
+    if (isRib) fade.add(cut.meanHu);
+    if (others < 3 || n < 8) continue;
     line.resize(n - 2);
     break;
   }
@@ -187,12 +193,12 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
       break;
     }
     const Cut cut = cutAcross(field, expected, course, boneHu, usual);
-    const bool isGood = cut.isFound && cut.areaMm2 > 0.35 * usual && cut.meanHu > kBoneBrightness * usualHu && dot(course, heading) > kSharpTurn &&
+    const bool isGood = isLikeRib(cut) && dot(course, heading) > kSharpTurn &&
                         distance(cut.centre, expected) < (unsure > 2 ? 1.5 : 2.5);
     if (!isGood && !cut.isMerged && ++misses == 3) break;
     if (!isGood && unsure >= kLongestMergeMm / kStepMm) break;
     unsure = isGood ? 0 : unsure + 1;
-    if (isGood) misses = 0;
+    if (isGood) misses = 0, fade.add(cut.meanHu);
     front.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
   }
   front.resize(front.size() - std::size_t(unsure));

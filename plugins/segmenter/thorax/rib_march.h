@@ -30,8 +30,8 @@ struct MarchedRib {
 
 /// Straightens out a rough line (from back to front). Its inner part is centred on cuts normal to it; then the line is
 /// carried on from both ends, 2 mm a step along its own course and centred on each new cut. In front it ends where the
-/// bone ends: three steps without a cut, with a cut below 0.35 of the usual area or 0.83 of the usual brightness (calcified
-/// cartilage has no cortex), or a turn by 37 degrees (its specks lie off the line); where another rib touches it, it goes
+/// bone ends: three steps without a cut, with a cut below 0.35 of the usual area or that does not go on as the rib fades (RibFade:
+/// calcified cartilage), or a turn by 37 degrees (its specks lie off the line); where another rib touches it, it goes
 /// straight on for at most 30 mm. Behind it goes on to 20 mm from the middle of the vertebral body; where rib and transverse
 /// process cannot be told apart it goes straight on, bending gently towards the body. An empty line if fewer than five cuts
 /// were found.

@@ -130,89 +130,8 @@ void partMergedFronts(std::vector<FoundRib>& ribs) {
   }
 }
 
-Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top) {
-  std::array<std::vector<FoundRib*>, 2> sides;
-  for (FoundRib& rib : ribs) {
-    rib.number = 0;
-    sides[rib.side == Side::left].push_back(&rib);
-  }
-  // Ribs whose backs lie above the CT come first, the one that was cut nearest to the front as the first of all.
-  const auto frontY = [](const FoundRib* r) { return r->body.line.front().y; };
-  for (auto& side : sides)
-    std::stable_sort(side.begin(), side.end(), [&](const FoundRib* a, const FoundRib* b) {
-      if (a->beginsAtTop != b->beginsAtTop) return a->beginsAtTop;
-      return a->beginsAtTop ? frontY(a) < frontY(b) : a->backHeight > b->backHeight;
-    });
-
-  // The sides are paired by the heights of the ribs' backs; the first pass finds how much one side stands higher.
-  const auto wholeOf = [](const std::vector<FoundRib*>& side) {
-    std::vector<FoundRib*> whole;
-    std::copy_if(side.begin(), side.end(), std::back_inserter(whole), [](const FoundRib* r) { return !r->beginsAtTop; });
-    return whole;
-  };
-  const std::vector<FoundRib*> right = wholeOf(sides[0]), left = wholeOf(sides[1]);
-  std::vector<int> match;
-  double shift = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    std::vector<std::vector<double>> cost(right.size(), std::vector<double>(left.size()));
-    for (std::size_t r = 0; r < right.size(); ++r)
-      for (std::size_t l = 0; l < left.size(); ++l) cost[r][l] = std::abs(right[r]->backHeight - left[l]->backHeight - shift);
-    match = assign(cost, pass ? 10 : 14);
-    std::vector<double> differences;
-    for (std::size_t r = 0; r < right.size(); ++r)
-      if (match[r] >= 0) differences.push_back(right[r]->backHeight - left[match[r]]->backHeight);
-    if (!differences.empty()) shift = medianOf(differences);
-  }
-  // Levels: pairs and ribs without a partner, from the top.
-  struct Level {
-    double height;
-    FoundRib *right, *left;
-  };
-  std::vector<Level> levels;
-  std::vector<char> isPaired(left.size(), 0);
-  for (std::size_t r = 0; r < right.size(); ++r) {
-    FoundRib* partner = match[r] >= 0 ? left[match[r]] : nullptr;
-    if (partner) isPaired[match[r]] = 1;
-    levels.push_back({right[r]->backHeight, right[r], partner});
-  }
-  for (std::size_t l = 0; l < left.size(); ++l)
-    if (!isPaired[l]) levels.push_back({left[l]->backHeight + shift, nullptr, left[l]});
-  std::stable_sort(levels.begin(), levels.end(), [](const Level& a, const Level& b) { return a.height > b.height; });
-  if (levels.size() < 2) return Counting::none;
-
-  std::vector<double> gaps;
-  for (std::size_t n = 1; n < levels.size(); ++n) gaps.push_back(levels[n - 1].height - levels[n].height);
-  const double usual = medianOf(gaps);
-  const bool isCutAbove = std::any_of(ribs.begin(), ribs.end(), [](const FoundRib& r) { return r.beginsAtTop; });
-  Counting counting = Counting::none;
-  int first = 0;
-  if (!isCutAbove && top - levels.front().height >= std::max(12.0, std::min(gaps.front(), usual))) {
-    counting = Counting::fromFirst;
-    first = 1;
-  } else if (levels.back().height - bottom >= 1.6 * std::max(usual, gaps.back())) {
-    counting = Counting::fromLast;
-    first = 13 - int(levels.size());
-  } else {
-    return Counting::none;
-  }
-  const auto give = [](FoundRib* rib, int number) {
-    if (rib && number >= 1 && number <= 12) rib->number = number;
-  };
-  for (std::size_t n = 0; n < levels.size(); ++n) {
-    give(levels[n].right, first + int(n));
-    give(levels[n].left, first + int(n));
-  }
-  // Ribs cut by the upper border go on upwards from the first whole one.
-  for (auto& side : sides) {
-    const auto whole = std::find_if(side.begin(), side.end(), [](const FoundRib* r) { return !r->beginsAtTop; });
-    int number = first;
-    for (auto rib = whole; rib != side.begin();) give(*--rib, --number);
-  }
-  return counting;
-}
-
-std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine& spine, double boneHu,
-                               std::vector<std::string>& warnings, const std::function<void(double)>& step) {
+std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine& spine, const std::optional<SecondNotches>& secondNotches,
+                               double boneHu, std::vector<std::string>& warnings, const std::function<void(double)>& step) {
   std::vector<FoundRib> ribs;
   const double bottom = body.firstSlice * body.spacing.z, top = body.lastSlice * body.spacing.z;
   SectionLimits limits;
@@ -241,10 +160,14 @@ std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine
         ribs.push_back(std::move(rib));
   }
   partMergedFronts(ribs);
-  switch (numberRibs(ribs, bottom, top)) {
+  switch (numberRibs(ribs, bottom, top, secondNotches)) {
     case Counting::fromFirst: break;
     case Counting::fromLast:
       warnings.push_back("the first rib is not in view: ribs are counted upwards from the lowest, taken as the 12th");
+      break;
+    case Counting::fromSternum:
+      warnings.push_back("neither the first nor the last rib is in view: ribs are counted from the one whose cartilage runs to the angle of Louis, "
+                         "taken as the second; look whether it is");
       break;
     case Counting::none:
       warnings.push_back("neither the first nor the last rib is in view: the ribs are not numbered");

@@ -1,22 +1,13 @@
 // The ribs of a chest: tracked, centred and numbered.
 #pragma once
 
-#include "plugins/segmenter/thorax/rib_march.h"
+#include "plugins/segmenter/thorax/rib_numbers.h"
 #include "plugins/segmenter/thorax/rib_tracks.h"
 
 #include <functional>
 #include <string>
 
 namespace pectora::thorax {
-
-/// One rib in local mm.
-struct FoundRib {
-  Side side = Side::right;
-  int number = 0;               ///< 0 until numbered
-  MarchedRib body;
-  double backHeight = 0;        ///< local z in the hindmost plane, or of the back end
-  bool beginsAtTop = false;     ///< its back lies above the CT
-};
 
 /// Which tracks are ribs: those that begin behind (plane 140 or more) and reach plane 138 or the CT's lower border, and
 /// those that begin at the CT's upper border; not those that have lung outside them, nor those that begin at the upper
@@ -30,18 +21,9 @@ std::vector<Track> chooseRibs(std::vector<Track> tracks, const Fan& fan, const B
 /// 40 mm before.
 void partMergedFronts(std::vector<FoundRib>& ribs);
 
-/// How the ribs were counted.
-enum class Counting { fromFirst, fromLast, none };
-
-/// Pairs the sides by height and numbers the ribs. Counts down from 1 if the first rib is in view: none is cut by the
-/// upper border and the topmost begins below it by at least the distance to the next. Otherwise up from 12 if the last
-/// rib is in view: the lowest begins at least 1.6 rib distances above the lower border. Otherwise leaves all at 0.
-/// Ribs that the counting makes less than 1 or more than 12 keep 0. `bottom` and `top` are the CT's borders, local mm.
-Counting numberRibs(std::vector<FoundRib>& ribs, double bottom, double top);
-
-/// Both sides' ribs, cranial first, right before left. `warnings` receives what the user must know.
-std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine& spine, double boneHu,
-                               std::vector<std::string>& warnings, const std::function<void(double)>& step = {});
+/// Both sides' ribs, cranial first, right before left; `secondNotches` as for numberRibs. `warnings` receives what the user must know.
+std::vector<FoundRib> findRibs(const Body& body, const Field& field, const Spine& spine, const std::optional<SecondNotches>& secondNotches,
+                               double boneHu, std::vector<std::string>& warnings, const std::function<void(double)>& step = {});
 
 /// How far the patient is turned about z, degrees: the median angle of the lines from right to left between points of the two
 /// ribs of a number that are equally far along them, against x. 0 if fewer than three ribs were found on both sides.

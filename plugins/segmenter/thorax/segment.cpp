@@ -69,7 +69,7 @@ std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> given, cons
   const std::vector<SternumSlice> sternum = findSternum(body, field, spine, settings.boneHu);
   std::vector<std::string> warnings;
   const std::vector<FoundRib> ribs =
-      findRibs(body, field, spine, settings.boneHu, warnings, part(0.45, 0.6, "tracking the ribs"));
+      findRibs(body, field, spine, findSecondNotches(sternum, grid.spacing.z), settings.boneHu, warnings, part(0.45, 0.6, "tracking the ribs"));
   for (const std::string& warning : warnings) host.warn(warning);
   if (ribs.empty()) host.warn("no ribs were found");
   if (sternum.empty()) host.warn("no sternum was found");

@@ -27,8 +27,8 @@ struct Settings {
 std::shared_ptr<const Anatomy> segment(std::shared_ptr<const Volume> ct, const Settings& settings, Host& host);
 
 /// Bone contours of one slice told apart by what was found there before, by position, size and Hu's first moment:
-/// "rib" (with side and number) around a rib's centreline, "sternum", "vertebra" within 45 mm of the column's middle,
-/// "scapula" for long thin ones outside the inner wall, "other" otherwise. Local mm, closed.
+/// "rib" (with side and number) around a rib's centreline, "sternum" (the outline that was found, in place of the bone in it),
+/// "vertebra" within 45 mm of the column's middle, "scapula" for long thin ones outside the inner wall, "other" otherwise. Local mm, closed.
 std::vector<SliceContour> classifyBones(const Field& field, int slice, double boneHu, const std::vector<FoundRib>& ribs,
                                         const std::vector<SternumSlice>& sternum, const Spine& spine);
 

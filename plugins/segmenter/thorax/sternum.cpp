@@ -15,6 +15,7 @@ constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   /
 constexpr double kMarginMm = 5, kMostDepthMm = 26;  // around what was found there before
 constexpr double kManubriumPart = 0.33;    // of the run's length
 constexpr double kFarthestAsideMm = 12;    // of an end's centroid from the midline
+constexpr double kPieceAsideMm = 18;
 constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
 constexpr double kLeastScore = 0.1;
 constexpr int kCentringRounds = 4;
@@ -105,8 +106,8 @@ SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double ha
     const double area = shape.area * kPixel * kPixel, y = (shape.centroid.y - hy) * kPixel;
     if (area < 12 || std::abs(y) > 12) continue;
     const auto [low, high] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-    // Fragments that do not come within 18 mm of the middle are calcified cartilage.
-    if ((low->x - hx) * kPixel > 18 || (high->x - hx) * kPixel < -18) continue;
+    // Pieces whose middle is farther than 18 mm aside are calcified cartilage, or the head of a clavicle.
+    if (std::abs(shape.centroid.x - hx) * kPixel > kPieceAsideMm) continue;
     crossesMiddle = crossesMiddle || ((low->x - hx) * kPixel < 4 && (high->x - hx) * kPixel > -4);
     for (Point2 p : loop) all.push_back({centre.x + (p.x - hx) * kPixel, centre.y + (p.y - hy) * kPixel});
   }

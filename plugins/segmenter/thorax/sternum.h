@@ -19,7 +19,8 @@ struct SternumSlice {
 /// Finds the sternum, cranial slice first. A path is followed through the slices by dynamic programming like the
 /// spine's: bone in a box of 24 x 10 mm, less the bone before and behind it, in front of the spine and at most 70 mm
 /// below the skin; the midline is the straight line x(z) that most of it lies on. In each slice the contours at `boneHu`
-/// within 24 mm (manubrium: 34 mm) aside and 20 mm before or behind are taken, and their convex hull. The sternum is the
+/// within 24 mm (manubrium: 34 mm) aside and 20 mm before or behind are taken whose middle is at most 18 mm aside (not calcified
+/// cartilage, nor a clavicle's head), and their convex hull. The sternum is the
 /// longest run of slices in which bone crosses the midline, with gaps of up to 12 mm. Empty if there is none longer than
 /// 25 mm.
 std::vector<SternumSlice> findSternum(const Body& body, const Field& field, const Spine& spine, double boneHu);

@@ -68,8 +68,11 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
       if (rib.side != side) continue;
       EXPECT_LT(polylineLength(rib.centerline), 420) << rib.number;   // the longest rib of an adult is about 330 mm
       if (rib.number == 0) continue;
-      if (above) {
+      // By their backs; those that the CT's upper border cuts, by their fronts.
+      if (above && rib.reachesVertebra && above->reachesVertebra) {
         EXPECT_LT(rib.centerline.front().z, above->centerline.front().z) << sideName(side) << rib.number;
+      } else if (above) {
+        EXPECT_LT(rib.centerline.back().z, above->centerline.back().z) << sideName(side) << rib.number;
       }
       above = &rib;
     }
@@ -109,6 +112,18 @@ TEST_P(RealCt, HasAWallAsThickAsChestWallsAre) {
   }
 }
 
+TEST_P(RealCt, HasAnInnerWallThatDoesNotPassThroughTheSternum) {
+  // Where the sternum was outlined, in the middle half of its width.
+  for (const std::vector<Vec3>& contour : anatomy->sternum.contours)
+    for (const LayerSlice& pleura : anatomy->pleura) {
+      if (contour.empty() || std::abs(pleura.z - contour.front().z) > 0.01) continue;
+      const auto [right, left] = std::minmax_element(contour.begin(), contour.end(), [](Vec3 a, Vec3 b) { return a.x < b.x; });
+      const double middle = 0.5 * (right->x + left->x), half = 0.25 * (left->x - right->x);
+      for (const Vec3& p : pleura.points)
+        EXPECT_FALSE(std::abs(p.x - middle) < half && isInContour(contour, p)) << "at z " << p.z;
+    }
+}
+
 TEST_P(RealCt, TakesNeitherCouchNorBlanketForBone) {
   double back = -1e300;
   for (const SliceContour& c : anatomy->contours)
@@ -133,6 +148,48 @@ TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
     if (range.what == "clipped skin") {
       EXPECT_NEAR(range.low - lowest, 191, 3);
     }
+}
+
+TEST(RealCts, OfAWholeThoraxHasRibsOfALengthOnBothSides) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // Their fronts fade; a rib that ends where it fades ends early, on one side by more than on the other.
+  for (int number = 3; number <= 8; ++number) {
+    const Rib *right = anatomy->rib(Side::right, number), *left = anatomy->rib(Side::left, number);
+    ASSERT_TRUE(right && left) << number;
+    EXPECT_NEAR(polylineLength(right->centerline) / polylineLength(left->centerline), 1, 0.07) << number;
+  }
+}
+
+TEST(RealCts, OfAWholeThoraxHasAThinWallWhereNoLungShowsItBelowTheDiaphragm) {
+  // In front, below the breasts, where no lung shows the wall: between the levels of the seventh and the ninth rib's front end.
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  const double low = anatomy->rib(Side::left, 9)->centerline.back().z, high = anatomy->rib(Side::right, 7)->centerline.back().z;
+  int levels = 0;
+  for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
+    const LayerSlice &skin = anatomy->skin[n], &pleura = anatomy->pleura[n];
+    if (skin.z < low || skin.z > high) continue;
+    ++levels;
+    for (const Vec3& p : pleura.points) {
+      if (std::abs(p.x - pleura.points[pleura.points.size() / 2].x) > 90) continue;
+      double nearest = 1e300;
+      for (const Vec3& q : skin.points) nearest = std::min(nearest, distance(p, q));
+      EXPECT_LT(nearest, 30) << "at x " << p.x << ", z " << p.z;   // 15 mm of cartilage and muscle, 15 of fat at the most
+    }
+  }
+  EXPECT_GT(levels, 10);
+}
+
+TEST(RealCts, ThatShowTheAngleOfLouisButNeitherTheFirstNorTheLastRibAreCountedFromTheSecond) {
+  const auto anatomy = anatomyOf("acrin_flt_013");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";
+  // By eye: the second rib ends beside the joint, at slice 41 of 4 mm; below it all to the tenth are in view on both sides.
+  for (Side side : {Side::right, Side::left}) {
+    for (int number = 2; number <= 10; ++number) EXPECT_NE(anatomy->rib(side, number), nullptr) << sideName(side) << number;
+    ASSERT_NE(anatomy->rib(side, 2), nullptr);
+    EXPECT_NEAR(anatomy->rib(side, 2)->centerline.back().z, anatomy->sternum.manubriosternalJoint.z, 12);
+  }
 }
 
 TEST(RealCts, OfThickSlicesSaysSo) {

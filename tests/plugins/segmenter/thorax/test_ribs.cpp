@@ -1,6 +1,7 @@
 #include "solids.h"
 
 #include "kernel/value/curve.h"
+#include "plugins/segmenter/thorax/rib_fade.h"
 #include "plugins/segmenter/thorax/ribs.h"
 
 #include <gtest/gtest.h>
@@ -116,6 +117,23 @@ TEST(CutAcross, PartsTwoRibsThatTouch) {
   EXPECT_NEAR(cut.centre.y, 24, 0.5);
 }
 
+TEST(RibFade, FollowsARibThatFadesTowardsItsEnd) {
+  // By 2 % of the usual brightness with every cut, from 24 cuts before the end.
+  RibFade fade({}, 400);
+  for (double part = 1; part > 0.56; part -= 0.02) {
+    ASSERT_TRUE(fade.goesOn(400 * part)) << part;
+    fade.add(400 * part);
+  }
+  EXPECT_FALSE(fade.goesOn(400 * 0.54)) << "too faint for a rib";
+  EXPECT_FALSE(fade.goesOn(400 * 0.70)) << "brighter again";
+}
+
+TEST(RibFade, StopsAtAStepDown) {
+  const RibFade fade(std::vector<double>(20, 400.0), 400);
+  EXPECT_TRUE(fade.goesOn(0.9 * 400));
+  EXPECT_FALSE(fade.goesOn(0.8 * 400));
+}
+
 /// Ribs of both sides at these heights (local z of their backs).
 std::vector<FoundRib> ladder(const std::vector<double>& right, const std::vector<double>& left) {
   std::vector<FoundRib> ribs;
@@ -159,6 +177,17 @@ TEST(NumberRibs, GivesNoNumbersIfNeitherEndIsInView) {
   std::vector<FoundRib> ribs = ladder({190, 165, 140}, {191, 166, 141});
   EXPECT_EQ(numberRibs(ribs, 120, 195), Counting::none);
   EXPECT_EQ(numbers(ribs, Side::left), (std::vector<int>{0, 0, 0}));
+}
+
+TEST(NumberRibs, CountsFromTheRibThatRunsToTheAngleOfLouisIfNeitherEndIsInView) {
+  // Fronts 30 mm below the backs and 80 mm before them, falling by 6 mm in their last 24; the notches are 20 mm further inwards.
+  std::vector<FoundRib> ribs = ladder({190, 165, 140}, {191, 166, 141});
+  for (FoundRib& rib : ribs) rib.body.line = {{0, 120, rib.backHeight}, {0, 64, rib.backHeight - 24}, {0, 40, rib.backHeight - 30}}, rib.body.reachesJunction = true;
+  const auto notches = [](double z) { return SecondNotches{Vec3{0, 20, z}, Vec3{0, 20, z}}; };
+  EXPECT_EQ(numberRibs(ribs, 120, 195, notches(133)), Counting::fromSternum);
+  EXPECT_EQ(numbers(ribs, Side::right), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(numbers(ribs, Side::left), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(numberRibs(ribs, 120, 195, notches(120)), Counting::none) << "midway between two ribs";
 }
 
 TEST(NumberRibs, OfNothingOrOneRibIsNone) {
