@@ -16,7 +16,8 @@ local p = parameters{
   { name = "spacing", default = 10, unit = "mm", range = { 1, 50 }, doc = "Distance between neighbouring points of the model" },
   { name = "skin_compression", default = 0.02, range = { 0, 1 }, doc = "Part of the skin's stiffness that acts in compression: skin that becomes slack gives way; 1: the paper's springs" },
   { name = "attachment", default = "carried", choices = { "carried", "struts" }, doc = "How the pleura hangs on the bones: drawn to where they carry it, or by the paper's springs, which turn freely" },
-  { name = "contact", default = true, doc = "Ribs, cartilages and sternum are in the pleura's way; without it solvers for springs alone can be taken" },
+  { name = "contact", default = true, doc = "Ribs, cartilages and sternum are in the pleura's way; without it and volume solvers for springs alone can be taken" },
+  { name = "volume", default = true, doc = "The cells between skin and pleura keep their volume, so that the wall does not fold into itself" },
   { name = "effects", default = 0, unit = "mm", range = { 0, 100 }, doc = "Of all installed effects run those that change the skin by about so much or more, which rough solves tell; 0: those of this script" },
   { name = "solver", default = "verlet", doc = "Name of the solver, see `pectora list`" },
   { name = "accuracy", default = 0, unit = "mm", range = { 0, 10 }, doc = "Choose model, spacing and solver for the least time in which the computed skin comes about so near (RMS in the pit) to a far finer computation; 0: as given" },
@@ -44,6 +45,7 @@ local effects = { effect.stretch(skin), effect.shear(skin), effect.bend(skin), e
 if p.contact then effects[#effects + 1] = effect.rib_contact{} end
 local isLattice = choice.model == "two_layer"
 for _, e in ipairs(isLattice and { effect.direct{}, effect.cross{} } or { effect.tissue{} }) do effects[#effects + 1] = e end   -- between skin and pleura
+if isLattice and p.volume then effects[#effects + 1] = effect.volume{} end
 if p.effects > 0 then effects[#effects + 1] = "auto" end
 local wall = { spacing = choice.spacing, effects = effects, accuracy = p.effects }
 local scene

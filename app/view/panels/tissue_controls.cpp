@@ -66,7 +66,7 @@ void otherEffect(Context& context, const std::string& id) {
   ImGui::PopID();
 }
 
-// A lattice has springs through the wall, a solid its tissue instead.
+// A lattice has springs and volume through the wall, a solid its tissue instead.
 void takeModel(Context& context, const std::string& id) {
   Choices& choices = context.choices;
   const bool isSolid = id == "model.volume_mesh";
@@ -76,7 +76,8 @@ void takeModel(Context& context, const std::string& id) {
     return std::none_of(known.begin(), known.end(), [&](const Parameter& p) { return p.name == setting.first; });
   });
   for (EffectChoice& effect : choices.effects) {
-    if (effect.plugin.id == "effect.direct" || effect.plugin.id == "effect.cross") effect.isOn = !isSolid;
+    for (const char* between : {"effect.direct", "effect.cross", "effect.volume"})
+      if (effect.plugin.id == between) effect.isOn = !isSolid;
     if (effect.plugin.id == "effect.tissue") effect.isOn = isSolid;
   }
   const bool hasTissue = std::any_of(choices.effects.begin(), choices.effects.end(), [](const EffectChoice& e) { return e.plugin.id == "effect.tissue"; });

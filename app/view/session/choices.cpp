@@ -36,7 +36,7 @@ Choices initialChoices(const std::vector<std::string>& solvers) {
   if (c.solver.id.empty() && !solvers.empty()) c.solver.id = solvers.front();
   // The effects of scripts/correction.lua, where slack skin gives way.
   const Settings skin{{"compression", 0.02}};
-  c.effects = {{{"effect.stretch", skin}}, {{"effect.shear", skin}}, {{"effect.bend", skin}}, {{"effect.direct"}}, {{"effect.cross"}}, {{"effect.attachment"}}, {{"effect.rib_contact"}}};
+  c.effects = {{{"effect.stretch", skin}}, {{"effect.shear", skin}}, {{"effect.bend", skin}}, {{"effect.direct"}}, {{"effect.cross"}}, {{"effect.volume"}}, {{"effect.attachment"}}, {{"effect.rib_contact"}}};
   return c;
 }
 

@@ -12,7 +12,7 @@ inline constexpr double kPatience = 500;
 
 /// A phantom that is soon made, on a wall of few points that is soon solved.
 inline void makeCoarse(Choices& choices) {
-  std::erase_if(choices.effects, [](const EffectChoice& effect) { return effect.plugin.id == "effect.rib_contact"; });
+  std::erase_if(choices.effects, [](const EffectChoice& effect) { return effect.plugin.id == "effect.rib_contact" || effect.plugin.id == "effect.volume"; });
   choices.usesIcp = false;
   choices.loader = {"loader.phantom", {{"matrix", 128.0}, {"slice_spacing", 5.0}}};
   assign(choices.model.settings, "spacing", 14.0);
