@@ -102,11 +102,13 @@ Solution follow(const System& system, const Drive& drive, const NodeVectors* sta
         .allowed(fmt::format("up to {}", settings.mostSteps)).advise("Follow a shorter time, allow more steps, or take solver.implicit, whose steps may be longer");
   Solution solution;
   int evaluations = 0;
-  for (int halvings = 0; halvings <= (settings.mayHalve ? kMostHalvings : 0); ++halvings) {
-    if (halvings > 0) host.info(fmt::format("followed anew with steps of {:.3g} s", dynamics.interval / perInterval / (1 << halvings)));
-    solution = followOnce(system, movement, int(perInterval) << halvings, int(intervals), make, host);
+  double steps = perInterval;   // in every interval
+  for (int halvings = 0;; ++halvings, steps *= 2) {
+    if (halvings > 0) host.info(fmt::format("followed anew with steps of {:.3g} s", dynamics.interval / steps));
+    solution = followOnce(system, movement, int(steps), int(intervals), make, host);
     evaluations += solution.forceEvaluations;
-    if (solution.status != SolveStatus::diverged) break;
+    const bool mayHalve = settings.mayHalve && halvings < kMostHalvings && 2 * steps * intervals <= settings.mostSteps;
+    if (solution.status != SolveStatus::diverged || !mayHalve) break;
   }
   solution.forceEvaluations = evaluations;
   return solution;
