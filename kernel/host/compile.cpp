@@ -180,9 +180,9 @@ BarLoad shareLift(const Compiled& compiled, const Plan& plan) {
   if (!(chest > 0)) return load;
   load.part = 1 / (1 + chest / bar);
   // The bars' forces F_j = f L_j do the work that the chest takes up: the sum of F_j L_j is that of the chest.
-  double lifts = 0, squares = 0;
-  for (const Bar& lifted : plan.bars) lifts += lifted.lift, squares += lifted.lift * lifted.lift;
-  load.force = squares > 0 ? chest * load.part * lifts / squares : 0;
+  double squares = 0;
+  for (const Bar& lifted : plan.bars) squares += lifted.lift * lifted.lift;
+  for (const Bar& lifted : plan.bars) load.forces.push_back(squares > 0 ? chest * load.part * lifted.lift / squares : 0);
   return load;
 }
 

@@ -47,7 +47,7 @@ Compiled compile(const Scene& scene, Registry& registry, CtLoads loads = CtLoads
 /// How the bars and the chest share the way.
 struct BarLoad {
   double part = 1;       ///< of the planned way that the sternum goes
-  double force = NAN;    ///< of the chest on the bars together, N, each in proportion to its lift; NAN if no effect knows the chest's stiffness
+  std::vector<double> forces = {};   ///< of the chest on each bar, N, in proportion to their lifts; empty if no effect knows the chest's stiffness
 };
 BarLoad shareLift(const Compiled& compiled, const Plan& plan);
 

@@ -85,7 +85,7 @@ std::shared_ptr<const Motion> WarmSolve::solve(const Plan& plan, Host& host) {
   motion->anchors = drive.frames.back();
   const BarLoad load = shareLift(compiled_, plan);
   motion->lift = load.part * plan.lift();
-  motion->barForce = load.force;
+  motion->barForces = load.forces;
   motion->status = solution.status;
   motion->message = std::move(solution.message);
   motion->iterations = solution.iterations;

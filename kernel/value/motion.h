@@ -31,7 +31,7 @@ struct Motion : Value {
   std::vector<std::vector<Vec3>> between;   ///< the same of the layers between
   std::vector<Vec3> anchors;                ///< where the plan brought the scene's anchors, and then what effects guide
   double lift = 0;                          ///< how far the point over the first bar came, mm: less than planned if the bar gives way
-  double barForce = std::numeric_limits<double>::quiet_NaN();   ///< of the chest on all bars together, N; NaN if no effect knows it
+  std::vector<double> barForces;            ///< of the chest on each of the plan's bars, N; empty if no effect knows it
   SolveStatus status = SolveStatus::stalled;
   std::string message;                      ///< what is wrong, and where, if not converged
   int iterations = 0;
@@ -46,6 +46,8 @@ struct Motion : Value {
   std::vector<Moment> moments;              ///< how it came there, if the scene asks for its motion in time; `outer` is the end of it
 
   const char* kind() const override { return kName; }
+  /// Of the chest on all bars together, N; NaN if no effect knows it.
+  double barForce() const;
   /// Among them "overshoot": how much farther from its place at rest a point of the skin came on its way in time than in the end.
   std::vector<Fact> facts() const override;
   /// As Scene::layer.

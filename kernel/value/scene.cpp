@@ -3,6 +3,7 @@
 #include "kernel/value/motion.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pectora {
 
@@ -49,6 +50,10 @@ const char* statusName(SolveStatus status) {
   return "unknown";
 }
 
+double Motion::barForce() const {
+  return barForces.empty() ? std::numeric_limits<double>::quiet_NaN() : std::accumulate(barForces.begin(), barForces.end(), 0.0);
+}
+
 std::vector<Fact> Motion::facts() const {
   double greatest = 0, fastest = 0, overshoot = 0;
   for (std::size_t i = 0; i < outer.size(); ++i) {
@@ -68,7 +73,8 @@ std::vector<Fact> Motion::facts() const {
           {"inverted_prisms", double(invertedPrisms), ""},
           {"greatest_skin_displacement", greatest, "mm"},
           {"lift", lift, "mm"},
-          {"bar_force", barForce, "N"},
+          {"bar_force", barForce(), "N"},
+          {"second_bar_force", barForces.size() > 1 ? barForces[1] : std::numeric_limits<double>::quiet_NaN(), "N"},
           {"duration", moments.empty() ? 0 : moments.back().time, "s"},
           {"fastest", fastest, "mm/s"},
           {"overshoot", overshoot, "mm"}};

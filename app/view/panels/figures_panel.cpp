@@ -98,8 +98,10 @@ void figuresPanel(Context& context) {
       row("Lift reached", isLess ? fmt::format("{:.1f} of {:.1f} mm", motion->lift, r.planValue()->lift()) : fmt::format("{:.1f} mm", motion->lift), isLess ? &kWarm : nullptr);
       hint("How far the bar brings the deepest point of the sternum: less than planned where effect.bar_compliance lets it bend");
     }
-    row("Force on the bar", std::isfinite(motion->barForce) ? fmt::format("{:.0f} N", motion->barForce) : "–");
-    hint("Of the chest on the bar; effect.cartilage_bending knows it");
+    std::string forces;
+    for (const double force : motion->barForces) forces += fmt::format("{}{:.0f} N", forces.empty() ? "" : ", ", force);
+    row(motion->barForces.size() > 1 ? "Force on the bars" : "Force on the bar", forces.empty() ? "–" : forces);
+    hint("Of the chest on each bar; effect.cartilage_bending knows it");
     row("Residual", fmt::format("{:.1e}", motion->relativeResidual));
     row("Iterations", std::to_string(motion->iterations));
     if (motion->invertedPrisms > 0) row("Cells inside out", std::to_string(motion->invertedPrisms), &kBad);

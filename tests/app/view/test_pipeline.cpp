@@ -260,7 +260,7 @@ TEST(Pipeline, TellsLiftAndForceWhereTheBarGivesWay) {
   EXPECT_EQ(r->error, "");
   ASSERT_TRUE(r->motionValue());
   EXPECT_LT(r->motionValue()->lift, 15);
-  EXPECT_GT(r->motionValue()->barForce, 0);
+  EXPECT_GT(r->motionValue()->barForce(), 0);
   // What moves goes on from there, with the bar's own guides among the anchors.
   assign(s.choices.planner.settings, "lift", 16.0);
   EXPECT_TRUE(s.after(s.choices, true)->isLive);
