@@ -123,7 +123,7 @@ const std::vector<Entry>& table() {
        [](Draft& d) { auto& a = d.wall.scene->anchors; for (std::size_t j = 0; j < a.size(); ++j) a[j].rest = a[j - j % 3].rest; }},
       {"collinear_attachments", Must::tell, "the three attachments of a point lie on one line, and are pushed through it", 10,
        [](Draft& d) { auto& a = d.wall.scene->anchors; for (std::size_t j = 0; j < a.size(); ++j) a[j].rest = a[j - j % 3].rest + Vec3{0, double(j % 3), 0}; }},
-      {"torn_between_bones", Must::tell, "of the three bones that carry a point one goes 80 mm away", 80,
+      {"torn_between_bones", Must::tell, "of the three bones that carry a point, and hold it by struts, one goes 80 mm away", 80,
        [](Draft& d) {
          d.wall.callEffect("effect.attachment", {{"youngs_modulus", 1000.0}});
          auto& a = d.wall.scene->anchors;

@@ -51,7 +51,7 @@ std::shared_ptr<HardCase> makeRandomCase(unsigned seed) {
     // Volume has no meaning where a cell has none.
     if (damage == 4 && !hard->isSpringsAlone) hard->must = Must::flag;
   }
-  // Half of those from rest are carried by their bones. (A start would have to say where the carriers are.)
+  // Half of those from rest are carried by their bones, too, beside the struts. (A start would have to say where the carriers are.)
   if (!wall.start && count(0, 1) == 1) wall.callEffect("effect.attachment", {{"youngs_modulus", modulus}});
   hard->name = "random";
   hard->text = "a scene drawn from the seed " + std::to_string(seed);
