@@ -37,7 +37,7 @@ void ConjugateGradients<Vectors>::solve(std::size_t free, const NodeVectors& gra
   p_.clear();
   for (std::size_t i = 0; i < free; ++i) r_.set(i, -gradient[i]);
   metric(r_, z_);
-  scaleAndAdd(z_, 0, p_, free);
+  setSum(z_, 0, z_, p_, free);
   double rz = dot(r_, z_, free);
   const double target = forcing * forcing * rz;
   const int most = int(std::min<std::size_t>(3 * free + 10, 2000));
@@ -48,15 +48,15 @@ void ConjugateGradients<Vectors>::solve(std::size_t free, const NodeVectors& gra
     ++products_;
     const double curvature = dot(p_, hp_, free);
     if (!(curvature > 1e-14 * rz)) {
-      axpy(rz / std::max(-curvature, 1e-2 * rz), p_, solution_, free);
+      setSum(solution_, rz / std::max(-curvature, 1e-2 * rz), p_, solution_, free);
       return;
     }
     const double step = rz / curvature;
-    axpy(step, p_, solution_, free);
-    axpy(-step, hp_, r_, free);
+    setSum(solution_, step, p_, solution_, free);
+    setSum(r_, -step, hp_, r_, free);
     metric(r_, z_);
     const double next = dot(r_, z_, free);
-    scaleAndAdd(z_, next / rz, p_, free);
+    setSum(z_, next / rz, p_, p_, free);
     rz = next;
   }
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace pectora {
 
@@ -10,13 +9,13 @@ namespace {
 
 // What is left of the way is the inverse Hessian times the gradient. The metric may make it too short by this factor.
 constexpr double kMetricsError = 4;
-
-void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
-  for (auto [v, w] : {std::pair{&from.x, &to.x}, {&from.y, &to.y}, {&from.z, &to.z}})
-    for (std::size_t i = 0; i < count; ++i) (*w)[i] = float((*v)[i]);
-}
+// A step tells nothing if the gradient has changed along it by less than this part of what the metric expects.
+constexpr double kLeastCurvature = 1e-8;
 
 }  // namespace
+
+Lbfgs::Lbfgs(std::shared_ptr<Metric> metric, std::size_t memory)
+    : metric_(std::move(metric)), memory_(memory), sy_(memory, memory), yMy_(memory, memory), sg_(memory), yMg_(memory) {}
 
 // From the metric alone.
 void Lbfgs::forget() {
@@ -24,54 +23,75 @@ void Lbfgs::forget() {
   scale_ = 1;
 }
 
+void Lbfgs::dropOldest() {
+  const Eigen::Index left = Eigen::Index(pairs_.size()) - 1;
+  for (Eigen::MatrixXd* products : {&sy_, &yMy_}) products->topLeftCorner(left, left) = products->block(1, 1, left, left).eval();
+  for (Eigen::VectorXd* products : {&sg_, &yMg_}) products->head(left) = products->segment(1, left).eval();
+  pairs_.pop_front();
+}
+
 void Lbfgs::applyMetric(const NodeVectors& gradient, std::size_t free) {
-  copy(gradient, q_, free);
-  metric_->apply(q_, metricGradient_);
+  copy(gradient, single_, free);
+  metric_->apply(single_, metricGradient_);
 }
 
-// The two loops: direction = -(approximate inverse Hessian) gradient. What the metric makes of the vector between them is put together
-// from what it made of its parts.
-void Lbfgs::findDirection(const NodeVectors& gradient, std::size_t free) {
-  std::vector<double> alpha(pairs_.size());
-  copy(gradient, q_, free);
-  direction_ = metricGradient_;
-  for (std::size_t k = pairs_.size(); k-- > 0;) {
-    alpha[k] = pairs_[k].inverseSy * dot(pairs_[k].s, q_, free);
-    axpy(-alpha[k], pairs_[k].y, q_, free);
-    axpy(-alpha[k], pairs_[k].my, direction_, free);
-  }
-  axpy(-scale_ - 1, direction_, direction_, free);
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const double beta = pairs_[k].inverseSy * dot(pairs_[k].y, direction_, free);
-    axpy(-alpha[k] - beta, pairs_[k].s, direction_, free);
-  }
+void Lbfgs::project(const NodeVectors& gradient, std::size_t free) {
+  std::vector<const SingleVectors*> vectors;
+  for (const Pair& pair : pairs_) vectors.insert(vectors.end(), {&pair.s, &pair.my});
+  const std::vector<double> products = dots(vectors, gradient, free);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) sg_[Eigen::Index(k)] = products[2 * k], yMg_[Eigen::Index(k)] = products[2 * k + 1];
 }
 
-// Keeps the last step if the curvature along it is positive. The oldest pair gives its room.
+// The two loops: direction = -(approximate inverse Hessian) gradient.
+void Lbfgs::findDirection(std::size_t free) {
+  const Eigen::Index count = Eigen::Index(pairs_.size());
+  Eigen::VectorXd alpha(count), part(count);   // the direction is made of `part` of every s
+  for (Eigen::Index k = count; k-- > 0;) {
+    const Eigen::Index newer = count - k - 1;
+    alpha[k] = (sg_[k] - sy_.row(k).segment(k + 1, newer).dot(alpha.tail(newer))) / sy_(k, k);
+  }
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double yr = scale_ * (yMg_[k] - yMy_.col(k).head(count).dot(alpha)) + sy_.col(k).head(k).dot(part.head(k));
+    part[k] = alpha[k] - yr / sy_(k, k);
+  }
+  std::vector<Scaled> sum{{-scale_, &metricGradient_}};
+  for (Eigen::Index k = 0; k < count; ++k)
+    sum.insert(sum.end(), {{scale_ * alpha[k], &pairs_[std::size_t(k)].my}, {-part[k], &pairs_[std::size_t(k)].s}});
+  setSum(sum, direction_, free);
+}
+
+// Keeps the last step if the curvature along it is positive; the oldest pair gives its room. What the metric makes of a change is the change
+// of what it makes of the gradient.
 void Lbfgs::remember(double step, const NodeVectors& gradientBefore, const NodeVectors& gradient, std::size_t free) {
-  std::swap(metricGradient_, spare_);
-  applyMetric(gradient, free);
   Pair pair;
   if (pairs_.size() == memory_) {
     pair = std::move(pairs_.front());
-    pairs_.pop_front();
+    dropOldest();
   } else {
-    pair = {SingleVectors(free), SingleVectors(free), SingleVectors(free), 0};
+    pair = {SingleVectors(direction_.size()), SingleVectors(direction_.size())};
   }
-  for (auto [s, d] : {std::pair{&pair.s.x, &direction_.x}, {&pair.s.y, &direction_.y}, {&pair.s.z, &direction_.z}})
-    for (std::size_t i = 0; i < free; ++i) (*s)[i] = float(step) * (*d)[i];
-  for (auto [y, after, before] : {std::tuple{&pair.y.x, &gradient.x, &gradientBefore.x}, {&pair.y.y, &gradient.y, &gradientBefore.y},
-                                  {&pair.y.z, &gradient.z, &gradientBefore.z}})
-    for (std::size_t i = 0; i < free; ++i) (*y)[i] = float((*after)[i] - (*before)[i]);
-  for (auto [y, after, before] : {std::tuple{&pair.my.x, &metricGradient_.x, &spare_.x}, {&pair.my.y, &metricGradient_.y, &spare_.y},
-                                  {&pair.my.z, &metricGradient_.z, &spare_.z}})
-    for (std::size_t i = 0; i < free; ++i) (*y)[i] = (*after)[i] - (*before)[i];
-  const double sy = dot(pair.s, pair.y, free), yy = dot(pair.y, pair.y, free), ss = dot(pair.s, pair.s, free);
-  if (!(sy > 1e-10 * std::sqrt(ss * yy))) return;
-  pair.inverseSy = 1 / sy;
-  // The metric's scale is that of the last step: s.y / y.(M^-1 y) (Nocedal and Wright, 7.20).
-  scale_ = sy / dot(pair.y, pair.my, free);
+  std::swap(pair.s, direction_);
+  if (step != 1) setSum({{step, &pair.s}}, pair.s, free);
+  std::swap(pair.my, metricGradient_);
+  applyMetric(gradient, free);
+  setSum(metricGradient_, -1, pair.my, pair.my, free);
+
+  // y is known by its products alone: those with the gradient after the step less those with the one before.
+  const Eigen::Index last = Eigen::Index(pairs_.size());
+  const std::vector<double> before = dots({&pair.s, &pair.my}, gradientBefore, free);
+  sg_[last] = before[0], yMg_[last] = before[1];
+  const Eigen::VectorXd sgBefore = sg_.head(last + 1), yMgBefore = yMg_.head(last + 1);
   pairs_.push_back(std::move(pair));
+  project(gradient, free);
+  sy_.col(last).head(last + 1) = sg_.head(last + 1) - sgBefore;
+  yMy_.col(last).head(last + 1) = yMg_.head(last + 1) - yMgBefore;
+  yMy_.row(last).head(last) = yMy_.col(last).head(last);
+  if (!(sy_(last, last) > kLeastCurvature * yMy_(last, last))) {
+    pairs_.pop_back();
+    return;
+  }
+  // The metric's scale is that of the last step: s.y / y.(M y) (Nocedal and Wright, 7.20).
+  scale_ = sy_(last, last) / yMy_(last, last);
 }
 
 Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) {
@@ -80,14 +100,15 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
   Trial trial;
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
-  if (const std::size_t nodes = std::max(free, system.anchorNode(0)); q_.size() != nodes) q_ = direction_ = metricGradient_ = spare_ = SingleVectors(nodes);
+  if (const std::size_t nodes = std::max(free, system.anchorNode(0)); single_.size() != nodes) single_ = direction_ = metricGradient_ = SingleVectors(nodes);
   if (metric_->refresh(x)) forget();
   applyMetric(e.gradient, free);
+  project(e.gradient, free);
   for (int n = 0; n < limits.iterations; ++n) {
     watch.iteration(e);
     if (e.isWithin(limits.tolerance)) return Outcome::converged;
     ++iterations;
-    findDirection(e.gradient, free);
+    findDirection(free);
     const double step = searchLine(objective, x, e, direction_, 1, trial);
     if (step == 0) {
       // What it remembers misleads here: begin anew. From the metric alone, no way down is the end.

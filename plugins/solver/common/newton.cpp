@@ -60,7 +60,7 @@ void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVecto
   for (std::size_t i = objective.system().freeNodes; i < x.size(); ++i) moved.set(i, next[i] - x[i]);
   hessian_->multiply(moved, force);
   solve(objective, force, forcing, poll);
-  axpy(1, direction_, next, objective.system().freeNodes);
+  setSum(next, 1, direction_, next, objective.system().freeNodes);
 }
 
 Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) {

@@ -1,5 +1,6 @@
 #include "plugins/solver/common/node_algebra.h"
 
+#include "kernel/physics/rows.h"
 #include "kernel/physics/workers.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace pectora {
 namespace {
 
-constexpr std::size_t kPiece = 8192;
+constexpr std::size_t kPiece = 2048;   // nodes; a few vectors of them fit the nearest caches
 
 template <class F>
 void forEachPiece(std::size_t count, F&& f) {
@@ -17,21 +18,36 @@ void forEachPiece(std::size_t count, F&& f) {
   });
 }
 
-// Four sums side by side, so that additions do not wait for each other.
+// Sums side by side, so that additions do not wait for each other; always as many, so that their bits are the same for every instruction set.
 template <class A, class B>
-double dot(const A* a, const B* b, std::size_t count) {
-  double sums[4] = {};
+PECTORA_INLINE double dotOf(const A* a, const B* b, std::size_t count) {
+  constexpr std::size_t kLanes = 16;
+  double sums[kLanes] = {};
   std::size_t i = 0;
-  for (; i + 4 <= count; i += 4)
-    for (int lane = 0; lane < 4; ++lane) sums[lane] += double(a[i + lane]) * double(b[i + lane]);
+  for (; i + kLanes <= count; i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += double(a[i + lane]) * double(b[i + lane]);
   for (; i < count; ++i) sums[0] += double(a[i]) * double(b[i]);
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  double total = 0;
+  for (const double sum : sums) total += sum;
+  return total;
 }
+PECTORA_WIDE double dot(const double* a, const double* b, std::size_t count) { return dotOf(a, b, count); }
+PECTORA_WIDE double dot(const double* a, const float* b, std::size_t count) { return dotOf(a, b, count); }
+PECTORA_WIDE double dot(const float* a, const float* b, std::size_t count) { return dotOf(a, b, count); }
 
-template <class X, class Y>
-void axpy(double s, const X* x, Y* y, std::size_t count) {
-  const Y factor = Y(s);
-  for (std::size_t i = 0; i < count; ++i) y[i] += factor * Y(x[i]);
+// to = x + s v.
+template <class X, class V, class To>
+PECTORA_INLINE void addOf(const X* x, To s, const V* v, To* to, std::size_t count) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) to[i] = To(x[i]) + s * To(v[i]);
+}
+PECTORA_WIDE void add(const double* x, double s, const double* v, double* to, std::size_t count) { addOf(x, s, v, to, count); }
+PECTORA_WIDE void add(const double* x, double s, const float* v, double* to, std::size_t count) { addOf(x, s, v, to, count); }
+PECTORA_WIDE void add(const float* x, float s, const float* v, float* to, std::size_t count) { addOf(x, s, v, to, count); }
+
+PECTORA_WIDE void scale(float s, const float* v, float* to, std::size_t count) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) to[i] = s * v[i];
 }
 
 }  // namespace
@@ -47,42 +63,62 @@ double dot(const A& a, const B& b, std::size_t count) {
   for (const double s : sums) total += s;
   return total;
 }
-
-template <class X, class Y>
-void axpy(double s, const X& x, Y& y, std::size_t count) {
-  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-    axpy(s, &x.x[begin], &y.x[begin], end - begin);
-    axpy(s, &x.y[begin], &y.y[begin], end - begin);
-    axpy(s, &x.z[begin], &y.z[begin], end - begin);
-  });
-}
-
-template <class Vectors>
-void scaleAndAdd(const Vectors& x, double s, Vectors& y, std::size_t count) {
-  using Number = typename decltype(x.x)::value_type;
-  const Number factor = Number(s);
-  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) y.x[i] = x.x[i] + factor * y.x[i];
-    for (std::size_t i = begin; i < end; ++i) y.y[i] = x.y[i] + factor * y.y[i];
-    for (std::size_t i = begin; i < end; ++i) y.z[i] = x.z[i] + factor * y.z[i];
-  });
-}
-
 template double dot(const NodeVectors&, const NodeVectors&, std::size_t);
 template double dot(const NodeVectors&, const SingleVectors&, std::size_t);
 template double dot(const SingleVectors&, const SingleVectors&, std::size_t);
-template void axpy(double, const NodeVectors&, NodeVectors&, std::size_t);
-template void axpy(double, const SingleVectors&, NodeVectors&, std::size_t);
-template void axpy(double, const SingleVectors&, SingleVectors&, std::size_t);
 
-template void scaleAndAdd(const NodeVectors&, double, NodeVectors&, std::size_t);
-template void scaleAndAdd(const SingleVectors&, double, SingleVectors&, std::size_t);
+std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count) {
+  std::vector<double> sums((count + kPiece - 1) / kPiece * vs.size()), totals(vs.size());
+  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+    const std::size_t n = end - begin;
+    double* sum = sums.data() + piece * vs.size();
+    for (const SingleVectors* v : vs) *sum++ = dot(&b.x[begin], &v->x[begin], n) + dot(&b.y[begin], &v->y[begin], n) + dot(&b.z[begin], &v->z[begin], n);
+  });
+  for (std::size_t i = 0; i < sums.size(); ++i) totals[i % vs.size()] += sums[i];
+  return totals;
+}
+
+template <class X, class V, class To>
+void setSum(const X& x, double s, const V& v, To& to, std::size_t count) {
+  using Number = typename decltype(to.x)::value_type;
+  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+    add(&x.x[begin], Number(s), &v.x[begin], &to.x[begin], end - begin);
+    add(&x.y[begin], Number(s), &v.y[begin], &to.y[begin], end - begin);
+    add(&x.z[begin], Number(s), &v.z[begin], &to.z[begin], end - begin);
+  });
+}
+template void setSum(const NodeVectors&, double, const NodeVectors&, NodeVectors&, std::size_t);
+template void setSum(const NodeVectors&, double, const SingleVectors&, NodeVectors&, std::size_t);
+template void setSum(const SingleVectors&, double, const SingleVectors&, SingleVectors&, std::size_t);
+
+void setSum(const std::vector<Scaled>& terms, SingleVectors& to, std::size_t count) {
+  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (auto axis : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
+      float* sum = &(to.*axis)[begin];
+      scale(float(terms[0].factor), &(terms[0].v->*axis)[begin], sum, end - begin);
+      for (std::size_t k = 1; k < terms.size(); ++k) add(sum, float(terms[k].factor), &(terms[k].v->*axis)[begin], sum, end - begin);
+    }
+  });
+}
+
+void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
+  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) to.x[i] = float(from.x[i]);
+    for (std::size_t i = begin; i < end; ++i) to.y[i] = float(from.y[i]);
+    for (std::size_t i = begin; i < end; ++i) to.z[i] = float(from.z[i]);
+  });
+}
 
 template <class Vectors>
 double longest(const Vectors& v, std::size_t count) {
-  typename decltype(v.x)::value_type squared = 0;
-  for (std::size_t i = 0; i < count; ++i) squared = std::max(squared, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
-  return std::sqrt(double(squared));
+  using Number = typename decltype(v.x)::value_type;
+  std::vector<Number> squared((count + kPiece - 1) / kPiece);
+  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+    Number largest = 0;
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
+    squared[piece] = largest;
+  });
+  return squared.empty() ? 0 : std::sqrt(double(*std::max_element(squared.begin(), squared.end())));
 }
 template double longest(const NodeVectors&, std::size_t);
 template double longest(const SingleVectors&, std::size_t);
@@ -93,15 +129,22 @@ double negligibleForce(const System& system) {
 }
 
 Residual largestResidual(const System& system, const NodeVectors& gradient) {
-  Residual r;
-  double squared = 0;
-  for (std::size_t i = 0; i < system.freeNodes; ++i) {
-    const double here = dot(gradient[i], gradient[i]);
-    if (!std::isfinite(here)) return {INFINITY, i};
-    if (here > squared) squared = here, r.node = i;
-  }
-  r.force = std::sqrt(squared);
-  return r;
+  const std::size_t count = system.freeNodes;
+  std::vector<Residual> found((count + kPiece - 1) / kPiece);
+  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+    double squared = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double here = dot(gradient[i], gradient[i]);
+      if (!std::isfinite(here)) {
+        found[piece] = {INFINITY, i};
+        return;
+      }
+      if (here > squared) squared = here, found[piece].node = i;
+    }
+    found[piece].force = std::sqrt(squared);
+  });
+  const auto largest = std::max_element(found.begin(), found.end(), [](const Residual& a, const Residual& b) { return a.force < b.force; });
+  return largest == found.end() ? Residual{} : *largest;
 }
 
 }  // namespace pectora

@@ -6,16 +6,24 @@
 
 namespace pectora {
 
-/// sum a_i . b_i over nodes [0, count), in double precision. A and B are NodeVectors or SingleVectors, but for B beside a
+/// sum a_i . b_i over nodes [0, count), in double precision. A and B are NodeVectors or SingleVectors, but for a double B beside a
 /// single A.
 template <class A, class B>
 double dot(const A& a, const B& b, std::size_t count);
-/// y_i += s x_i over nodes [0, count). X and Y are NodeVectors or SingleVectors.
-template <class X, class Y>
-void axpy(double s, const X& x, Y& y, std::size_t count);
-/// y_i = x_i + s y_i over nodes [0, count).
-template <class Vectors>
-void scaleAndAdd(const Vectors& x, double s, Vectors& y, std::size_t count);
+/// The same of every v and one b, which is read once.
+std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count);
+
+/// to_i = x_i + s v_i over nodes [0, count). All are NodeVectors, or all SingleVectors, or v alone is. `to` may be x or v.
+template <class X, class V, class To>
+void setSum(const X& x, double s, const V& v, To& to, std::size_t count);
+/// to_i = sum of factor * v_i over nodes [0, count), written once. `to` may be the first v.
+struct Scaled {
+  double factor;
+  const SingleVectors* v;
+};
+void setSum(const std::vector<Scaled>& terms, SingleVectors& to, std::size_t count);
+/// to_i = from_i over nodes [0, count).
+void copy(const NodeVectors& from, SingleVectors& to, std::size_t count);
 
 /// The length of the longest vector of nodes [0, count).
 template <class Vectors>

@@ -28,18 +28,15 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
   if (!(slope < 0)) return 0;
   // The driven nodes stay where they are while one minimiser works.
   if (place.size() != x.size()) place = x;
-  else
-    for (auto v : {&NodeVectors::x, &NodeVectors::y, &NodeVectors::z}) std::copy_n((x.*v).begin(), count, (place.*v).begin());
   const double rounding = (objective.precision() == Precision::full ? 1e-13 : 1e-6) * std::abs(e.value);
-  double step = firstStep, before = 0;
+  double step = firstStep;
   for (int halving = 0; halving < 40; ++halving) {
-    axpy(step - before, d, place, count);
-    before = step;
+    setSum(x, step, d, place, count);
     objective.evaluate(place, trial);
     const bool isFinite = std::isfinite(trial.value) && std::isfinite(trial.residual.force);
     const bool falls = trial.value <= e.value + 1e-4 * step * slope;
-    const bool flattens = trial.value <= e.value + rounding && std::abs(dot(trial.gradient, d, count)) <= 0.9 * -slope;
-    if (isFinite && (falls || flattens)) {
+    const auto flattens = [&] { return trial.value <= e.value + rounding && std::abs(dot(trial.gradient, d, count)) <= 0.9 * -slope; };
+    if (isFinite && (falls || flattens())) {
       std::swap(x, place);
       std::swap(e, trial);
       return step;

@@ -72,7 +72,7 @@ class QuasiStatic final : public Session {
       NodeVectors trial = x;
       movement.apply(next, trial);
       const double forcing = movement.isFromStart() ? acceleration_.warmForcing : acceleration_.forcing;
-      if (predictor_) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
+      if (predictor_ && forcing < 1) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
       // From a given start there is no path to keep to.
       const NodeVectors predicted = movement.isFromStart() ? NodeVectors() : trial;
       const int left = most - solution.iterations;

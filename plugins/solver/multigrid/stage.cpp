@@ -7,7 +7,7 @@ using namespace pectora;
 
 constexpr int kStepIterations = 200;
 // The linear answer need not be better than the bar's movement is linear, and a small movement's costs more than a step.
-constexpr double kForcing = 0.1, kWarmForcing = 0.5;
+constexpr double kForcing = 0.1, kWarmForcing = 1;
 
 class MultigridSolver final : public Solver {
  public:
