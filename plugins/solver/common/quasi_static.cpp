@@ -71,13 +71,14 @@ class QuasiStatic final : public Session {
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
       NodeVectors trial = x;
       movement.apply(next, trial);
-      const double forcing = movement.isFromStart() ? acceleration_.warmForcing : acceleration_.forcing;
-      if (predictor_ && forcing < 1) predictor_->predict(objective, x, trial, forcing, [&] { host.checkCancel(); });
-      // From a given start there is no path to keep to.
+      if (predictor_ && (!movement.isFromStart() || acceleration_.predictsFromStart))
+        predictor_->predict(objective, x, trial, acceleration_.forcing, [&] { host.checkCancel(); });
+      // From a given start there is no path to keep to, so that the last step may end where it will.
       const NodeVectors predicted = movement.isFromStart() ? NodeVectors() : trial;
+      const bool isFree = isLast && movement.isFromStart();
       const int left = most - solution.iterations;
-      const double tolerance = std::max(settings_.tolerance, kLooseTolerance);
-      Outcome outcome = minimise(objective, trial, end, tolerance, std::min(left, stepIterations_), next, solution, host);
+      const double tolerance = isFree ? settings_.tolerance : std::max(settings_.tolerance, kLooseTolerance);
+      Outcome outcome = minimise(objective, trial, end, tolerance, isFree ? left : std::min(left, stepIterations_), next, solution, host);
       const bool isExhausted = solution.iterations >= most;
       const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end.isWithin(kLooseTolerance));
       const bool isOnCourse = isLeast || !predictor_ || movement.isFromStart() ||

@@ -6,8 +6,8 @@ namespace {
 using namespace pectora;
 
 constexpr int kStepIterations = 200;
-// The linear answer need not be better than the bar's movement is linear, and a small movement's costs more than a step.
-constexpr double kForcing = 0.1, kWarmForcing = 1;
+// The linear answer need not be better than the bar's movement is linear.
+constexpr double kForcing = 0.1;
 
 class MultigridSolver final : public Solver {
  public:
@@ -21,7 +21,7 @@ class MultigridSolver final : public Solver {
   std::unique_ptr<Session> prepare(const System& system, Host&) override {
     const std::shared_ptr<Metric> metric = makeMultigridMetric(system);
     return makeQuasiStatic(system, settings_, makeMultigridMinimiser(system, metric, std::size_t(memory_)), kStepIterations,
-                           {.metric = metric, .forcing = kForcing, .warmForcing = kWarmForcing, .accuracy = accuracy_});
+                           {.metric = metric, .forcing = kForcing, .predictsFromStart = false, .accuracy = accuracy_});
   }
 
  private:

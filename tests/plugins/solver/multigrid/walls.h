@@ -60,7 +60,7 @@ inline std::unique_ptr<Session> multigrid(const System& system, double tolerance
   QuasiStaticSettings settings;
   settings.tolerance = tolerance;
   const std::shared_ptr<Metric> metric = makeMultigridMetric(system);
-  return makeQuasiStatic(system, settings, makeMultigridMinimiser(system, metric, 5), 200, {.metric = metric, .forcing = 0.1, .warmForcing = 1, .accuracy = accuracy});
+  return makeQuasiStatic(system, settings, makeMultigridMinimiser(system, metric, 5), 200, {.metric = metric, .forcing = 0.1, .predictsFromStart = false, .accuracy = accuracy});
 }
 
 }  // namespace pectora
