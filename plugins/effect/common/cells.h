@@ -5,7 +5,7 @@
 
 namespace pectora {
 
-/// What a cell resists with: mu and kappa, MPa. Either may be 0, not both.
+/// What a cell resists with: mu and kappa, MPa.
 struct CellModuli {
   double shear = 0, bulk = 0;
 };
@@ -25,5 +25,9 @@ CellModuli moduliOf(double youngsModulusKPa, double poissonsRatio);
 ///
 /// Its stiffness bound is that of the rest shape. Throws Error naming the first cell whose rest shape has no positive volume at every point of quadrature.
 std::unique_ptr<Term> makeCellTerm(std::string name, const System& system, const std::vector<CellModuli>& cells);
+
+/// The same cells where nothing but the volume meets resistance, V kappa/2 (Jm - 1)^2, with kappa = `bulk`, MPa: no quadrature is needed. Throws
+/// Error naming the first cell without positive volume at rest. The projected Hessian leaves out how the pressure turns with the cell's faces.
+std::unique_ptr<Term> makeVolumeTerm(std::string name, const System& system, double bulk);
 
 }  // namespace pectora

@@ -29,7 +29,7 @@ class Volume final : public Effect {
     }
     part.notes = {fmt::format("kappa = {:.4g} kPa; the springs of the wall should aim at E = {:.4g} kPa, which they do with poissons_ratio = {:.4g}",
                               1e3 * kappa, 2.5e3 * mu, poissonsRatio_)};
-    part.terms.push_back(makeCellTerm("volume", system, std::vector<CellModuli>(scene.cells(), {0, kappa})));
+    part.terms.push_back(makeVolumeTerm("volume", system, kappa));
     return part;
   }
 

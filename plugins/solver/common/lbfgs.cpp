@@ -7,7 +7,7 @@ namespace pectora {
 
 namespace {
 
-// What is left of the way is the inverse Hessian times the gradient. The metric may make it too short by this factor.
+// What is left of the way is the inverse Hessian times the gradient. The metric makes it too short by up to this factor.
 constexpr double kMetricsError = 4;
 // A step tells nothing if the gradient has changed along it by less than this part of what the metric expects.
 constexpr double kLeastCurvature = 1e-8;

@@ -17,7 +17,7 @@ constexpr float kLowest = 0.25f;
 constexpr int kPowerSteps = 8, kPowerStepsAgain = 2;
 // The finest levels cost the most and gain the least from seeing each other's work: additive, a cycle needs no product with
 // their matrices, only with their diagonals.
-constexpr std::size_t kAdditiveLevels = 3;
+constexpr std::size_t kAdditiveLevels = 2;
 
 // y = a x + b y, over fixed pieces.
 void combine(float a, const SingleVectors& x, float b, SingleVectors& y) {

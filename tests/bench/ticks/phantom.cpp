@@ -63,12 +63,25 @@ void phantomTick(benchmark::State& state) {
   const auto warm = patient.solve(patient.scene(double(state.range(0)) / 100, state.range(1)), "solver.multigrid", {{"accuracy", 0.1}}, host);
   warm->solve(*patient.plan(20), host);
   double lift = 20, forces = 0, iterations = 0;
+  std::shared_ptr<const Motion> motion;
   for (auto _ : state) {
     lift = lift == 20 ? 22 : 20;
-    const auto motion = warm->solve(*patient.plan(lift), host);
+    motion = warm->solve(*patient.plan(lift), host);
     if (motion->status != SolveStatus::converged) state.SkipWithError(motion->message.c_str());
     forces += motion->forceEvaluations, iterations += motion->iterations;
   }
+  // How far the last skin is from rest.
+  const auto exact = patient.solve(warm->scene(), "solver.multigrid", {{"tolerance", 1e-8}, {"max_iterations", 20000.0}}, host);
+  exact->startFrom(*motion);
+  const auto rest = exact->solve(*patient.plan(lift), host);
+  double largest = 0, squares = 0;
+  for (std::size_t i = 0; i < rest->outer.size(); ++i) {
+    const double error = distance(rest->outer[i], motion->outer[i]);
+    largest = std::max(largest, error), squares += error * error;
+  }
+  state.counters["error_mm"] = largest;
+  state.counters["rms_error_mm"] = std::sqrt(squares / double(rest->outer.size()));
+  state.counters["reference_residual"] = rest->relativeResidual;
   state.counters["points"] = double(warm->compiled().system->points());
   state.counters["force_evaluations"] = forces / double(state.iterations());
   state.counters["iterations"] = iterations / double(state.iterations());
