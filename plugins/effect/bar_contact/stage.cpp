@@ -27,7 +27,7 @@ class BarContact final : public Effect {
     // A row of points counts as under the bar if it is the nearest one to it.
     part.steering.guides = [inner = scene.inner, margin = 0.5 * scene.rowSpacing](const Plan& plan, double t, const std::vector<Vec3>&) { return barFront(plan, t, inner, margin); };
     part.notes = {"between the bar's hinges, over its width and half a row to each side"};
-    part.terms.push_back(makePairTerm("bar_contact", system, std::move(pairs), makeObstacleLaw(std::move(obstacles)), false));
+    part.terms.push_back(makePairTerm("bar_contact", system, std::move(pairs), makeObstacleLaw(obstacles), false));
     return part;
   }
 

@@ -1,14 +1,29 @@
 #include "plugins/effect/common/pair_term.h"
 
+#include "kernel/physics/workers.h"
+
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace pectora {
 namespace {
 
+// Pairs of a free node and a driven one come first, node by node, so that pieces of them share no free node and can be evaluated side by
+// side. The others follow.
 class PairTerm final : public Term {
  public:
   PairTerm(std::string name, std::size_t freeNodes, std::vector<NodePair> pairs, std::unique_ptr<PairLaw> law, bool holds)
-      : name_(std::move(name)), freeNodes_(freeNodes), pairs_(std::move(pairs)), law_(std::move(law)), holds_(holds) {}
+      : name_(std::move(name)), freeNodes_(freeNodes), pairs_(std::move(pairs)), law_(std::move(law)), holds_(holds), order_(pairs_.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t(0));
+    const auto isHeld = [&](std::size_t i) { return pairs_[i].far >= freeNodes_; };
+    const auto end = std::stable_partition(order_.begin(), order_.end(), isHeld);
+    std::stable_sort(order_.begin(), end, [&](std::size_t i, std::size_t j) { return pairs_[i].near < pairs_[j].near; });
+    const std::size_t held = std::size_t(end - order_.begin());
+    for (std::size_t n = 0; n < held; ++n)
+      if (pieces_.empty() || (n >= pieces_.back() + kPiece && pairs_[order_[n]].near != pairs_[order_[n - 1]].near)) pieces_.push_back(n);
+    pieces_.push_back(held);
+  }
 
   std::string name() const override { return name_; }
 
@@ -19,13 +34,25 @@ class PairTerm final : public Term {
   }
 
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
+    std::vector<double> energies(pieces_.size()), largest(energies);
+    const auto evaluatePiece = [&](std::size_t piece, std::size_t end) {
+      double squared = 0;
+      for (std::size_t n = pieces_[piece]; n < end; ++n) {
+        const std::size_t i = order_[n];
+        const auto [energy, force] = law_->pull(i, way(i, positions));
+        energies[piece] += energy;
+        squared = std::max(squared, dot(force, force));
+        gradient.add(pairs_[i].near, -force);
+        if (pairs_[i].far < freeNodes_) gradient.add(pairs_[i].far, force);
+      }
+      largest[piece] = std::sqrt(squared);
+    };
+    parallelFor(pieces_.size() - 1, [&](std::size_t piece) { evaluatePiece(piece, pieces_[piece + 1]); });
+    evaluatePiece(pieces_.size() - 1, order_.size());
     double total = 0;
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const PairLaw::Pull pull = law_->pull(i, way(i, positions));
-      total += pull.energy;
-      largestForce = std::max(largestForce, norm(pull.force));
-      gradient.add(pairs_[i].near, -pull.force);
-      gradient.add(pairs_[i].far, pull.force);
+    for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
+      total += energies[piece];
+      largestForce = std::max(largestForce, largest[piece]);
     }
     return total;
   }
@@ -55,6 +82,9 @@ class PairTerm final : public Term {
   std::vector<NodePair> pairs_;
   std::unique_ptr<PairLaw> law_;
   bool holds_;
+
+  static constexpr std::size_t kPiece = 4096;
+  std::vector<std::size_t> order_, pieces_;   // pairs in the order of their evaluation; where pieces of them begin, the last with two free nodes
 };
 
 class PairHessian final : public Hessian {
@@ -99,26 +129,34 @@ std::unique_ptr<Hessian> PairTerm::makeHessian() const { return std::make_unique
 
 class ObstacleLaw final : public PairLaw {
  public:
-  explicit ObstacleLaw(std::vector<Obstacle> obstacles) : obstacles_(std::move(obstacles)) {}
+  explicit ObstacleLaw(const std::vector<Obstacle>& obstacles) {
+    kept_.reserve(obstacles.size());
+    for (const Obstacle& o : obstacles) kept_.push_back({float(o.away.x), float(o.away.y), float(o.away.z), float(o.clearance), float(o.stiffnessNPerMm)});
+  }
 
   Pull pull(std::size_t i, Vec3 d) const override {
     const double depth = into(i, d);
     if (depth <= 0) return {};
-    const double k = obstacles_[i].stiffnessNPerMm;
-    return {0.5 * k * depth * depth, obstacles_[i].away * (k * depth)};
+    const double k = stiffnessBound(i);
+    return {0.5 * k * depth * depth, away(i) * (k * depth)};
   }
   Symmetric3 curvature(std::size_t i, Vec3 d, bool) const override {
     if (into(i, d) <= 0) return {};
-    const Vec3 n = obstacles_[i].away;
-    const double k = obstacles_[i].stiffnessNPerMm;
+    const Vec3 n = away(i);
+    const double k = stiffnessBound(i);
     return {k * n.x * n.x, k * n.x * n.y, k * n.x * n.z, k * n.y * n.y, k * n.y * n.z, k * n.z * n.z};
   }
-  double stiffnessBound(std::size_t i) const override { return obstacles_[i].stiffnessNPerMm; }
+  double stiffnessBound(std::size_t i) const override { return double(kept_[i].stiffness); }
 
  private:
+  // An obstacle as it is kept; there are several for every point of the pleura.
+  struct Kept {
+    float x, y, z, clearance, stiffness;
+  };
+  Vec3 away(std::size_t i) const { return {double(kept_[i].x), double(kept_[i].y), double(kept_[i].z)}; }
   // How deep the near node is in the wall, mm.
-  double into(std::size_t i, Vec3 d) const { return obstacles_[i].clearance + dot(obstacles_[i].away, d); }
-  std::vector<Obstacle> obstacles_;
+  double into(std::size_t i, Vec3 d) const { return double(kept_[i].clearance) + dot(away(i), d); }
+  std::vector<Kept> kept_;
 };
 
 }  // namespace
@@ -127,6 +165,6 @@ std::unique_ptr<Term> makePairTerm(std::string name, const System& system, std::
   return std::make_unique<PairTerm>(std::move(name), system.freeNodes, std::move(pairs), std::move(law), holds);
 }
 
-std::unique_ptr<PairLaw> makeObstacleLaw(std::vector<Obstacle> obstacles) { return std::make_unique<ObstacleLaw>(std::move(obstacles)); }
+std::unique_ptr<PairLaw> makeObstacleLaw(const std::vector<Obstacle>& obstacles) { return std::make_unique<ObstacleLaw>(obstacles); }
 
 }  // namespace pectora

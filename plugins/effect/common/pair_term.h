@@ -37,6 +37,6 @@ struct Obstacle {
   Vec3 away;
   double clearance = 0, stiffnessNPerMm = 0;
 };
-std::unique_ptr<PairLaw> makeObstacleLaw(std::vector<Obstacle> obstacles);
+std::unique_ptr<PairLaw> makeObstacleLaw(const std::vector<Obstacle>& obstacles);
 
 }  // namespace pectora

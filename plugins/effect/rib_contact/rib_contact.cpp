@@ -36,7 +36,7 @@ class RibContact final : public Effect {
       return part;
     }
     part.notes = {fmt::format("{} pairs of pleura and bone", pairs.size())};
-    part.terms.push_back(makePairTerm("rib_contact", system, std::move(pairs), makeObstacleLaw(std::move(obstacles)), false));
+    part.terms.push_back(makePairTerm("rib_contact", system, std::move(pairs), makeObstacleLaw(obstacles), false));
     return part;
   }
 
