@@ -23,10 +23,10 @@ void checkNeeds(const std::string& solver, const Needs& needs, const std::vector
 }  // namespace
 
 WarmSolve::WarmSolve(std::shared_ptr<const Scene> scene, std::string id, std::unique_ptr<Solver> solver, Registry& registry, Host& host)
-    : scene_(std::move(scene)), rest_(scene_), solver_(std::move(solver)), registry_(registry), compiled_(compile(*scene_, registry)) {
+    : scene_(std::move(scene)), id_(std::move(id)), rest_(scene_), solver_(std::move(solver)), registry_(registry), compiled_(compile(*scene_, registry)) {
   for (const EffectUse& use : compiled_.effects)
     if (!use.isActive) host.info(use.id + " drops out: " + use.reason);
-  checkNeeds(id, solver_->needs(), compiled_.effects);
+  checkNeeds(id_, solver_->needs(), compiled_.effects);
   if (scene_->still > 0 && !mayLeaveOut()) host.info(fmt::format("all points are computed, as {}", compiled_.isLoadedInCt ? "the weight moves them all" : "what moves in time may spread"));
   if (!compiled_.isLoadedInCt) return;
   if (const auto found = findRestShape(*scene_, *solver_, registry, host)) {
@@ -57,6 +57,12 @@ void WarmSolve::startFrom(const Motion& motion) {
 bool WarmSolve::mayLeaveOut() const { return !compiled_.isLoadedInCt && !compiled_.system->dynamics.isAskedFor(); }
 
 void WarmSolve::startFrom(NodeVectors positions) { start_ = std::move(positions); }
+
+void WarmSolve::takeOver(WarmSolve& before, Host& host) {
+  if (before.id_ != id_ || !before.session_) return;
+  prepare(host);
+  if (session_) session_->takeOver(*before.session_);
+}
 
 void WarmSolve::prepare(Host& host) {
   if (session_ || region_) return;

@@ -22,6 +22,9 @@ class WarmSolve {
   void startFrom(const Motion& motion);
   /// The same for positions of all nodes, such as a solver shows on its way (Host::preview). Empty: at rest.
   void startFrom(NodeVectors positions);
+  /// Takes from the solve of a scene that was a little different, such as before a stiffness changed, what its solver prepared at length.
+  /// `before` is not to be solved again.
+  void takeOver(WarmSolve& before, Host& host);
   /// Makes the solver ready, which the first solve otherwise does.
   void prepare(Host& host);
   /// Solves for the end of `plan`, whatever the status. Throws Cancelled; then the next solve begins where this one did.
@@ -30,6 +33,7 @@ class WarmSolve {
  private:
   bool mayLeaveOut() const;   // whether points may stand still
   std::shared_ptr<const Scene> scene_;
+  std::string id_;
   std::shared_ptr<const Scene> rest_;   // without the loads that the CT shows it under; the scene itself if there are none
   std::unique_ptr<Solver> solver_;
   Registry& registry_;

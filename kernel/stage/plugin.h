@@ -37,7 +37,7 @@ struct Descriptor {
 
 // Version of the interface between kernel and plugins: raise it when a type in kernel/value, kernel/physics or
 // kernel/stage changes.
-#define PECTORA_INTERFACE "8"
+#define PECTORA_INTERFACE "9"
 
 #define PECTORA_TEXT_(x) #x
 #define PECTORA_TEXT(x) PECTORA_TEXT_(x)

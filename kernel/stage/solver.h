@@ -31,6 +31,9 @@ class Session {
   /// to begin, and the driven nodes then go straight to the end of `drive`; null: at rest.
   /// Throws Cancelled when the host says so.
   virtual Solution solve(const Drive& drive, const NodeVectors* start, Host& host) = 0;
+  /// Takes from `before`, a session of the same plugin for a system that was a little different, what it prepared at length and what still
+  /// does here: guesses that steer, nothing that decides the answer. `before` is not asked again.
+  virtual void takeOver(Session& /*before*/) {}
 };
 
 /// What a solver uses of every term beside energy and gradient, which all terms have; and what it cannot do without.

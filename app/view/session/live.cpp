@@ -25,7 +25,7 @@ std::unique_ptr<Solver> makeSolver(Registry& registry, const PluginChoice& choic
 
 WarmSolve& LiveSolve::ready(const std::shared_ptr<const Scene>& scene, const PluginChoice& solver, const Motion* motion, Host& host) {
   if (warm_ && warm_->scene() == scene && solver_ == solver) return *warm_;
-  warm_ = nullptr;
+  const auto before = std::move(warm_);
   if (scene->points() >= kFineWall && registry_.has("solver.multigrid")) {
     try {
       const PluginChoice fine{"solver.multigrid", {{"accuracy", kLiveAccuracy}}};
@@ -40,6 +40,7 @@ WarmSolve& LiveSolve::ready(const std::shared_ptr<const Scene>& scene, const Plu
     applySettings(loosened(solver.settings, parameters(describe)), describe);
     warm_ = std::make_unique<WarmSolve>(scene, solver.id, std::move(chosen), registry_, host);
   }
+  if (before) warm_->takeOver(*before, host);
   solver_ = solver;
   isWarm_ = false;
   if (motion) startFrom(*motion);

@@ -33,6 +33,11 @@ class QuasiStatic final : public Session {
     if (Newton::isFor(system)) predictor_ = std::make_unique<Newton>(system, acceleration.metric);
   }
 
+  void takeOver(Session& before) override {
+    auto* other = dynamic_cast<QuasiStatic*>(&before);
+    if (other && acceleration_.metric && other->acceleration_.metric) acceleration_.metric->takeOver(*other->acceleration_.metric);
+  }
+
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
     Objective objective(system_);
     if (acceleration_.accuracy >= kRoughAccuracy) objective.setPrecision(Precision::rough);

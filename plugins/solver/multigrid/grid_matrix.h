@@ -19,6 +19,7 @@ struct GridPoint {
 /// Layers of rows x columns points. Point (l, r, c) has the number (l * rows + r) * columns + c.
 struct GridShape {
   int layers = 0, rows = 0, columns = 0;
+  bool operator==(const GridShape&) const = default;
   std::size_t points() const { return std::size_t(layers) * rows * columns; }
   std::size_t number(int layer, int row, int column) const { return (std::size_t(layer) * rows + row) * columns + column; }
   GridPoint point(std::size_t number) const {

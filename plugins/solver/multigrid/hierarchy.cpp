@@ -76,6 +76,7 @@ struct Hierarchy::Coarsest {
 
 Hierarchy::Hierarchy(GridShape fine) : fine_(fine) {}
 Hierarchy::~Hierarchy() = default;
+Hierarchy& Hierarchy::operator=(Hierarchy&&) noexcept = default;
 
 void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& multiply) {
   std::vector<std::unique_ptr<Level>> before = std::move(levels_);

@@ -12,6 +12,7 @@ class Hierarchy {
  public:
   explicit Hierarchy(GridShape fine);
   ~Hierarchy();
+  Hierarchy& operator=(Hierarchy&&) noexcept;
 
   /// Product of the fine matrix with a vector.
   using Product = std::function<void(const SingleVectors& x, SingleVectors& y)>;

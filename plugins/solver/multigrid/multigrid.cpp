@@ -30,6 +30,12 @@ class MultigridMetric final : public Metric {
     return true;
   }
 
+  // Its coarse grids, until they steer badly.
+  void takeOver(Metric& before) override {
+    auto* other = dynamic_cast<MultigridMetric*>(&before);
+    if (other && other->shape_ == shape_) hierarchy_ = std::move(other->hierarchy_);
+  }
+
   void apply(const SingleVectors& g, SingleVectors& d) const override {
     ++cycles_;
     hierarchy_.cycle(g, d);

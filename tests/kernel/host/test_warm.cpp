@@ -47,6 +47,25 @@ TEST(WarmSolve, GoesOnFromTheMotionOfASceneWithOtherEffects) {
   EXPECT_LT(largestDifference(before->outer, after->outer), 1e-4);
 }
 
+TEST(WarmSolve, TakesOverWhatSteersAndNothingThatDecides) {
+  Warm w;
+  const Wall soft(10), other(12, 1.2);
+  WarmSolve before = w.make(soft.scene, "solver.multigrid"), fresh = w.make(other.scene, "solver.multigrid"), next = w.make(other.scene, "solver.multigrid");
+  const auto motion = before.solve(*soft.plan, w.host);
+  fresh.startFrom(*motion);
+  next.startFrom(*motion);
+  next.takeOver(before, w.host);
+  const auto expected = fresh.solve(*other.plan, w.host), found = next.solve(*other.plan, w.host);
+  EXPECT_EQ(found->status, SolveStatus::converged);
+  EXPECT_LT(largestDifference(found->outer, expected->outer), 1e-4);
+  EXPECT_NE(found->energyHistory, expected->energyHistory) << "it was steered by other coarse grids";
+  // Another solver has nothing to give.
+  WarmSolve newton = w.make(soft.scene), last = w.make(other.scene, "solver.multigrid");
+  newton.solve(*soft.plan, w.host);
+  last.takeOver(newton, w.host);
+  EXPECT_LT(largestDifference(last.solve(*other.plan, w.host)->outer, expected->outer), 1e-4);
+}
+
 TEST(WarmSolve, RefusesTheMotionOfAnotherScene) {
   Warm w;
   WarmSolve warm = w.make(Wall(10).scene);
