@@ -12,7 +12,6 @@ struct LayerSettings {
   double still = 0;          ///< Scene::still
   double accuracy = 0;       ///< Scene::effectAccuracy
 
-  bool operator==(const LayerSettings&) const = default;
   void describe(Visitor& v);
 };
 

@@ -1,7 +1,6 @@
 #include "tests/plugins/model/common/barrel.h"
 
 #include "plugins/model/two_layer/masses.h"
-#include "plugins/model/two_layer/wall.h"
 
 #include <gtest/gtest.h>
 
@@ -16,21 +15,4 @@ TEST(Layers, WeighWhatTheWallWeighs) {
   double volume = 0;
   for (int i = 0; i < scene.points(); ++i) volume += scene.rowSpacing * scene.columnSpacing * distance(scene.outer[i], scene.inner[i]);
   EXPECT_NEAR(total, 1060e-9 * volume, 1e-9 * total);
-}
-
-TEST(Wall, IsMadeOnceForOneCageAndOneSetOfSettings) {
-  const auto cage = barrel(), other = barrel();
-  int made = 0;
-  const auto attaching = [&] { ++made; };
-  WallSettings settings;
-  const auto first = wallOf(cage, settings, attaching);
-  EXPECT_EQ(wallOf(cage, settings, attaching), first);
-  EXPECT_EQ(made, 1);
-  EXPECT_NE(wallOf(other, settings, attaching), first);
-  settings.layers.spacing = 14;
-  const auto wide = wallOf(cage, settings, attaching);
-  EXPECT_LT(wide->points(), first->points());
-  settings.reach = 20;
-  EXPECT_NE(wallOf(cage, settings, attaching), wide);
-  EXPECT_EQ(made, 4);
 }
