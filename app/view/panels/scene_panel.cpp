@@ -1,5 +1,6 @@
 #include "app/view/panels/scene_panel.h"
 
+#include "app/view/panels/scene_joints.h"
 #include "app/view/panels/widgets.h"
 #include "app/view/platform/target.h"
 
@@ -68,8 +69,10 @@ void ScenePanel::toolbar(Context& context) {
     }
     ImGui::EndPopup();
   }
+}
 
-  // Before and after.
+void ScenePanel::beforeAndAfter(Context& context) {
+  SceneOptions& o = context.scene;
   const float need = 250 * context.scale;
   if (ImGui::GetContentRegionAvail().x > 0) ImGui::SameLine(0, 16 * context.scale);
   if (ImGui::GetContentRegionAvail().x < need) ImGui::NewLine();
@@ -90,9 +93,10 @@ void ScenePanel::setClip(Context& context) {
   o.clip.offset = dot(o.clip.normal, parts_.bounds().first) + o.clipAt;
 }
 
-void ScenePanel::draw(Context& context, float width, float height) {
+void ScenePanel::draw(Context& context, float width, float height, CorrectionsPanel* corrections) {
   ImGui::BeginGroup();
   toolbar(context);
+  if (!corrections) beforeAndAfter(context);
   setClip(context);
   parts_.update(context);
   // A new patient is shown whole, from the front and a little from above and the left.
@@ -104,11 +108,17 @@ void ScenePanel::draw(Context& context, float width, float height) {
     framed_ = patient;
   }
   const float left = ImGui::GetContentRegionAvail().x, below = height - (ImGui::GetCursorPosY());
-  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, held_.has_value());
+  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, held_ || (corrections && corrections->isHolding()));
   mark("scene");
-  mouse(context, input);
+  if (corrections && corrections->isOn()) {
+    context.picked.reset();   // the mouse is for ribs
+    moveJoints(context, *corrections, viewport_, input);
+  } else {
+    mouse(context, input);
+  }
   viewport_.draw(renderer_, parts_.items(context), context.scene.clip, parts_.version(), context.scale);
   overlays(context);
+  if (corrections) drawJoints(context, *corrections, viewport_);
   ImGui::EndGroup();
 }
 
@@ -126,7 +136,6 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
       }
     if (held_) {
       const std::string which = *held_ == 0 ? "" : "second_";
-      grabbedMouse_ = input.at;
       atGrab_ = {plannerSetting(context, which + "lift"), plannerSetting(context, which + "level"), plannerSetting(context, which + "tilt")};
     }
   }
@@ -140,9 +149,7 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
 // A bar follows the mouse in the plane of the picture. Its middle: up and down is its level, forwards its lift; beyond, its tilt.
 void ScenePanel::dragBar(Context& context, const ViewportInput& input) {
   const Camera& camera = viewport_.camera;
-  const double mm = camera.heightAt(norm(grabbedAt_ - camera.eye()));
-  const double dx = (input.at.x - grabbedMouse_.x) * camera.aspect * mm, dy = (grabbedMouse_.y - input.at.y) * mm;
-  const Vec3 moved = camera.right() * dx + camera.up() * dy;
+  const Vec3 moved = camera.onPlane(grabbedAt_, input.at.x, input.at.y) - grabbedAt_;
   const Plan* plan = context.results->planValue();
   const double aside = plan && std::size_t(*held_) < plan->bars.size() ? grabbedAt_.x - plan->bars[*held_].point.x : 0;
   const bool isEnd = std::abs(aside) > kMiddleOfBar && std::abs(camera.right().x) > 0.7;   // from the side one end hides all the bar
