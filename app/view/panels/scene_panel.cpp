@@ -66,6 +66,7 @@ void ScenePanel::toolbar(Context& context) {
       ImGui::SetNextItemWidth(110 * context.scale);
       ImGui::Combo("##axis", &o.clipAxis, "sagittal\0coronal\0axial\0");
       ImGui::SliderFloat("##at", &o.clipAt, -200, 200, "%.0f mm");
+      mark("clip.at");
     }
     ImGui::EndPopup();
   }
@@ -113,8 +114,8 @@ void ScenePanel::draw(Context& context, float width, float height, CorrectionsPa
   if (corrections && corrections->isOn()) {
     context.picked.reset();   // the mouse is for ribs
     moveJoints(context, *corrections, viewport_, input);
-  } else {
-    mouse(context, input);
+  } else if (held_ || !ImGui::IsMouseHoveringRect(barLow_, barHigh_)) {
+    mouse(context, input);   // a click on the colour bar means no point behind it
   }
   viewport_.draw(renderer_, parts_.items(context), context.scene.clip, parts_.version(), context.scale);
   overlays(context);
@@ -237,6 +238,7 @@ void ScenePanel::overlays(Context& context) {
 
 void ScenePanel::colorBar(Context& context) {
   const char* title = parts_.coloring(context);
+  barLow_ = barHigh_ = {};
   if (!title) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec2 low = viewport_.low();
@@ -260,21 +262,24 @@ void ScenePanel::colorBar(Context& context) {
     const float x = at.x + width * float(i) / 4 - (i == 0 ? 0 : i == 4 ? ImGui::CalcTextSize(text.c_str()).x : ImGui::CalcTextSize(text.c_str()).x / 2);
     list->AddText({x, at.y + height + 0.2f * em}, IM_COL32(200, 205, 212, 255), text.c_str());
   }
-  // A click on it fixes its end, or frees it.
-  const ImVec2 cursor = ImGui::GetCursorPos();
-  ImGui::SetCursorScreenPos(at);
-  ImGui::SetItemAllowOverlap();
-  if (ImGui::IsMouseHoveringRect(at, {at.x + width, at.y + height}) && ImGui::IsMouseClicked(0)) {
-    context.scene.range = float(parts_.high(context));
-    ImGui::OpenPopup("range");
+  // A click on it offers to fix its end, or to free it.
+  barLow_ = at, barHigh_ = {at.x + width, at.y + height};
+  markPlace("colorbar", at, {width, height});
+  if (ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(barLow_, barHigh_)) {
+    ImGui::SetTooltip("Click to fix the range");
+    if (ImGui::IsMouseClicked(0)) {
+      context.scene.range = float(parts_.high(context));
+      ImGui::OpenPopup("range");
+    }
   }
   if (ImGui::BeginPopup("range")) {
     ImGui::Checkbox("Fix the range", &context.scene.isRangeFixed);
+    mark("range.fix");
     ImGui::SetNextItemWidth(150 * context.scale);
     if (ImGui::SliderFloat("##range", &context.scene.range, 0.5f, 60, "%.1f mm")) context.scene.isRangeFixed = true;
+    mark("range");
     ImGui::EndPopup();
   }
-  ImGui::SetCursorPos(cursor);
 }
 
 void ScenePanel::turntable(const Context& context, const std::string& folder, int index, int pictures, int width, int height) {

@@ -36,6 +36,7 @@ class ScenePanel {
   struct {
     double lift = 0, level = 0, tilt = 0;
   } atGrab_;                             // its settings then
+  ImVec2 barLow_{}, barHigh_{};          // the colour bar on the screen; empty if there is none
   Camera turning_;                       // of the turntable: as it stood at the first picture
 };
 
