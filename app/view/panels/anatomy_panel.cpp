@@ -36,15 +36,19 @@ std::optional<Vec3> AnatomyPanel::controls(Context& context) {
     ImGui::TreePop();
   }
 
-  heading("Found in it");
-  if (!isSolid_) slices_.legend();
-  if (const Anatomy* anatomy = context.results->anatomyValue())
+  if (!isSolid_) {
+    heading("Found in it");
+    slices_.legend();
+  }
+  if (const Anatomy* anatomy = context.results->anatomyValue()) {
+    heading("Figures");
     for (const Fact& fact : anatomy->facts()) {
       const double* number = std::get_if<double>(&fact.value);
       if (!number) continue;
       const bool isCount = fact.unit.empty() && *number == std::round(*number);
       row(readable(fact.name).c_str(), (isCount ? std::to_string(int(*number)) : figure(*number)) + (fact.unit.empty() ? "" : " " + fact.unit));
     }
+  }
   return isSolid_ ? place : std::nullopt;
 }
 
