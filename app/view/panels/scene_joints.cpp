@@ -35,7 +35,7 @@ void moveJoints(Context& context, CorrectionsPanel& corrections, const Viewport&
     if (nearest) corrections.take(*nearest, viewport.camera.onPlane(nearest->at, input.at.x, input.at.y));
   }
 
-  // The plane goes through where it is now, which is where it was taken as far as depth goes.
+  // The plane goes through where it now is: its depth stays as it was taken.
   if (corrections.isHolding()) {
     for (const JointHandle& joint : corrections.handles(context))
       if (joint.isHeld && (input.movedBy.x != 0 || input.movedBy.y != 0)) corrections.hold(viewport.camera.onPlane(joint.at, input.at.x, input.at.y));
@@ -48,10 +48,16 @@ void moveJoints(Context& context, CorrectionsPanel& corrections, const Viewport&
 void drawJoints(const Context& context, const CorrectionsPanel& corrections, const Viewport& viewport) {
   const Rib* rib = corrections.chosen(context);
   if (!rib) return;
-  std::vector<ImVec2> line;
+  // Its line, piece by piece where the picture's edge cuts it.
+  std::vector<ImVec2> piece;
+  const auto drawPiece = [&] {
+    ImGui::GetWindowDrawList()->AddPolyline(piece.data(), int(piece.size()), IM_COL32(250, 160, 70, 200), 0, 2.5f * context.scale);
+    piece.clear();
+  };
   for (const Vec3& p : rib->centerline)
-    if (ImVec2 at; viewport.screen(p, at)) line.push_back(at);
-  ImGui::GetWindowDrawList()->AddPolyline(line.data(), int(line.size()), IM_COL32(250, 160, 70, 200), 0, 2.5f * context.scale);
+    if (ImVec2 at; viewport.screen(p, at)) piece.push_back(at);
+    else drawPiece();
+  drawPiece();
   for (const JointHandle& joint : corrections.handles(context))
     if (ImVec2 at; viewport.screen(joint.at, at)) drawJoint(joint, at, context.scale, "scene");
 }
