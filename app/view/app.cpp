@@ -145,7 +145,7 @@ void App::topBar(float width, float) {
   const bool isOpen = context_.choices.source != Source::none;
   for (int i = 0; i < kTabs; ++i) {
     const bool isHere = int(context_.tab) == i;
-    ImGui::PushStyleColor(ImGuiCol_Button, isHere ? ImVec4{0.20f, 0.34f, 0.37f, 1} : ImVec4{0, 0, 0, 0});
+    ImGui::PushStyleColor(ImGuiCol_Button, isHere ? kChosen : ImVec4{0, 0, 0, 0});
     ImGui::PushStyleColor(ImGuiCol_Text, isHere ? ImVec4{1, 1, 1, 1} : isOpen || i == 0 ? ImVec4{0.78f, 0.82f, 0.86f, 1} : kMuted);
     if (button(kTabNames[i], kTabMarks[i])) context_.tab = Tab(i);
     ImGui::PopStyleColor(2);
@@ -173,7 +173,9 @@ void App::topBar(float width, float) {
 void App::leftColumn(float, float) {
   switch (context_.tab) {
     case Tab::patient: patientControls(context_); break;
-    case Tab::anatomy: slices_.controls(context_); break;
+    case Tab::anatomy:
+      if (const auto place = anatomy_.controls(context_)) scene_.camera().target = *place;
+      break;
     case Tab::bar: barControls(context_); break;
     case Tab::tissue: tissueControls(context_); break;
     case Tab::compare: compare_.controls(context_); break;
@@ -188,7 +190,9 @@ void App::center(float width, float height) {
     const auto swapLook = [this](TabLook& look) {
       std::swap(look.skin, context_.scene.skin);
       std::swap(look.hasBones, context_.scene.hasBones);
+      std::swap(look.hasBar, context_.scene.hasBar);
       std::swap(look.hasScan, context_.scene.hasScan);
+      std::swap(look.part, context_.scene.part);
     };
     swapLook(looks_[int(lastTab_)]);
     swapLook(looks_[int(context_.tab)]);
@@ -203,13 +207,13 @@ void App::center(float width, float height) {
     opening(width, height);
   } else if (context_.tab == Tab::accuracy) {
     accuracyPicture(context_, width, height);
-  } else if (context_.tab == Tab::anatomy && context_.results->volume()) {
-    slices_.draw(context_, width, height);
+  } else if (context_.tab == Tab::anatomy && context_.results->volume() && !anatomy_.isSolid()) {
+    anatomy_.drawSlices(context_, width, height);
   } else if (context_.tab == Tab::compare && compare_.isPlacing()) {
     compare_.draw(context_, width, height);
     isCoarse_ = compare_.isCoarse();
   } else {
-    scene_.draw(context_, width, height);
+    scene_.draw(context_, width, height, context_.tab == Tab::anatomy && context_.results->volume() ? &anatomy_.corrections() : nullptr);
     isCoarse_ = scene_.isCoarse();
   }
 }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "app/view/context.h"
+#include "app/view/panels/anatomy_panel.h"
 #include "app/view/panels/compare_panel.h"
 #include "app/view/panels/scene_panel.h"
 #include "app/view/panels/script_panel.h"
-#include "app/view/panels/slices_panel.h"
 #include "app/view/platform/target.h"
 
 #include <array>
@@ -48,7 +48,7 @@ class App {
   Context context_;
   Renderer renderer_;
   ScenePanel scene_{renderer_};
-  SlicesPanel slices_;
+  AnatomyPanel anatomy_;
   ComparePanel compare_{renderer_};
   ScriptPanel script_;
   int settling_ = 3;            // frames that are drawn in any case
@@ -56,9 +56,16 @@ class App {
   /// What each tab shows of the scene while another is open; that of the open one is in the context.
   struct TabLook {
     SkinLook skin = SkinLook::natural;
-    bool hasBones = true, hasScan = false;
+    bool hasBones = true, hasBar = true, hasScan = false;
+    float part = 1;
   };
-  std::array<TabLook, kTabs> looks_{{{}, {}, {SkinLook::glass}, {SkinLook::displacement}, {SkinLook::hidden, false, true}, {}, {}}};
+  std::array<TabLook, kTabs> looks_{{{},
+                                     {.skin = SkinLook::glass, .hasBar = false, .part = 0},   // as the CT is
+                                     {.skin = SkinLook::glass},
+                                     {.skin = SkinLook::displacement},
+                                     {.skin = SkinLook::hidden, .hasBones = false, .hasScan = true},
+                                     {},
+                                     {}}};
   Tab lastTab_ = Tab::patient;
 };
 

@@ -57,6 +57,9 @@ void takeTour(Registry& registry, const ViewOptions& options) {
   hand.click("correct.Left rib 4");
   hand.click("correct.notch");
   picture("corrections");
+  hand.click("anatomy.solid");
+  picture("joints");
+  hand.click("anatomy.slices");
   hand.click("correct");
   hand.click("tab.compare");
   picture("compare");

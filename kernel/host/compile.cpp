@@ -1,8 +1,11 @@
 #include "kernel/host/compile.h"
 
 #include "kernel/host/settings.h"
+#include "kernel/physics/workers.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -69,13 +72,16 @@ void checkIslands(const System& system) {
 
 // The driven nodes after part t of the plan, of which the part `reached` is carried out.
 std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, const Plan& plan, double reached, double t) {
-  std::vector<Vec3> positions;
+  constexpr std::size_t kPiece = 1024;
+  const std::size_t count = scene.anchors.size();
+  std::vector<Vec3> positions(count);
   positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
-  for (const Anchor& anchor : scene.anchors) {
-    positions.push_back(plan.moved(anchor, reached * t));
-    for (const auto& [steering, guides] : compiled.steering)
-      if (steering.displacement) positions.back() += steering.displacement(plan, anchor) * t;
-  }
+  parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
+    for (std::size_t i = piece * kPiece; i < std::min(count, (piece + 1) * kPiece); ++i) positions[i] = plan.moved(scene.anchors[i], reached * t);
+  });
+  for (const auto& [steering, guides] : compiled.steering)
+    if (steering.displacement)
+      for (std::size_t i = 0; i < count; ++i) positions[i] += steering.displacement(plan, scene.anchors[i]) * t;
   const std::vector<Vec3> anchors = positions;
   for (const auto& [steering, guides] : compiled.steering)
     if (guides > 0)

@@ -22,6 +22,18 @@ Mesh layerMesh(int rows, int columns, std::vector<Vec3> points) {
   return mesh;
 }
 
+std::vector<double> skinDisplacement(const Scene& scene, const std::vector<Vec3>& outer) {
+  std::vector<double> far(outer.size());
+  for (std::size_t i = 0; i < far.size(); ++i) far[i] = distance(outer[i], scene.outer[i]);
+  return far;
+}
+
+Mesh displacedSkin(const Scene& scene, const std::vector<Vec3>& outer) {
+  Mesh mesh = layerMesh(scene.rows, scene.columns, outer);
+  mesh.fields.push_back({"displacement", "mm", skinDisplacement(scene, outer)});
+  return mesh;
+}
+
 std::vector<Fact> Scene::facts() const {
   return {{"rows", double(rows), ""},
           {"columns", double(columns), ""},
@@ -82,10 +94,7 @@ std::vector<Fact> Motion::facts() const {
 
 std::vector<std::pair<std::string, std::shared_ptr<const Value>>> Motion::parts() const {
   auto before = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, scene->outer));
-  auto after = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, outer));
-  PointField displacement{"displacement", "mm", {}};
-  for (std::size_t i = 0; i < outer.size(); ++i) displacement.values.push_back(distance(outer[i], scene->outer[i]));
-  after->fields.push_back(std::move(displacement));
+  auto after = std::make_shared<Mesh>(displacedSkin(*scene, outer));
   auto copied = std::make_shared<Mesh>(layerMesh(scene->rows, scene->columns, skinThatCopiesBone(*this)));
   return {{"scene", scene}, {"before", before}, {"after", after}, {"copied", copied}};
 }

@@ -81,4 +81,9 @@ struct Scene : Value {
 /// The triangle mesh of one layer; normals point out of the body.
 Mesh layerMesh(int rows, int columns, std::vector<Vec3> points);
 
+/// How far each point of the skin lies from its place at rest, mm. `outer` are as many as Scene::outer.
+std::vector<double> skinDisplacement(const Scene& scene, const std::vector<Vec3>& outer);
+/// The skin with its points elsewhere, and the field "displacement" from rest.
+Mesh displacedSkin(const Scene& scene, const std::vector<Vec3>& outer);
+
 }  // namespace pectora

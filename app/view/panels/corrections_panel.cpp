@@ -37,6 +37,17 @@ void numberList(Context& context, const Anatomy& anatomy, std::optional<RibName>
 
 }  // namespace
 
+void drawJoint(const JointHandle& joint, ImVec2 at, float scale, const std::string& picture) {
+  const float em = ImGui::GetFontSize(), radius = 0.36f * em;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddCircleFilled(at, radius, joint.isHeld ? IM_COL32(255, 220, 130, 255) : IM_COL32(250, 160, 70, 255));
+  list->AddCircle(at, radius, IM_COL32(20, 22, 26, 255), 0, 1.5f * scale);
+  const ImVec2 text{at.x + radius + 0.4f * em, at.y - 0.5f * em}, wide = ImGui::CalcTextSize(joint.name.c_str());
+  list->AddRectFilled({text.x - 0.2f * em, text.y}, {text.x + wide.x + 0.2f * em, text.y + wide.y}, IM_COL32(24, 28, 33, 210), 3);
+  list->AddText(text, IM_COL32(255, 200, 130, 255), joint.name.c_str());
+  markPlace(picture + "." + joint.name, {at.x - radius, at.y - radius}, {2 * radius, 2 * radius});
+}
+
 std::optional<Vec3> CorrectionsPanel::controls(Context& context) {
   const Anatomy* anatomy = context.results->anatomyValue();
   if (!anatomy) return {};
@@ -62,7 +73,7 @@ std::optional<Vec3> CorrectionsPanel::controls(Context& context) {
     } else {
       mark("correct.rib");
     }
-    if (!rib) note("Click a rib in a slice, or choose it here. Its joints can then be drawn to where they belong.");
+    if (!rib) note("Click a rib in the picture, or choose it here. Its joints can then be drawn to where they belong.");
     if (rib) {
       numberList(context, *anatomy, rib_);
       const ImVec2 half{(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2, 0};
@@ -73,10 +84,10 @@ std::optional<Vec3> CorrectionsPanel::controls(Context& context) {
       };
       const Notch* notch = notchOf(*anatomy, *rib_);
       place("Its junction", "correct.junction", rib->centerline.empty() ? nullptr : &rib->centerline.back());
-      hint("Where the rib ends and its cartilage begins: shows it in the slices, to be drawn with the mouse");
+      hint("Where the rib ends and its cartilage begins: shows it in the picture, to be drawn with the mouse");
       ImGui::SameLine();
       place("Its notch", "correct.notch", notch ? &notch->position : nullptr);
-      hint("Where its cartilage joins the sternum: shows it in the slices, to be drawn with the mouse");
+      hint("Where its cartilage joins the sternum: shows it in the picture, to be drawn with the mouse");
       if (button("It is no rib: leave it out", "correct.drop", {-1, 0})) {
         addCorrection(context.choices, ribDropped(*rib_));
         rib_.reset();
@@ -103,31 +114,34 @@ std::optional<Vec3> CorrectionsPanel::controls(Context& context) {
   return goTo;
 }
 
+const Rib* CorrectionsPanel::chosen(const Context& context) const {
+  const Anatomy* anatomy = context.results->anatomyValue();
+  return isOn_ && rib_ && anatomy ? findRib(*anatomy, *rib_) : nullptr;
+}
+
 std::vector<JointHandle> CorrectionsPanel::handles(const Context& context) const {
   std::vector<JointHandle> list;
-  const Anatomy* anatomy = context.results->anatomyValue();
-  const Rib* rib = isOn_ && rib_ && anatomy ? findRib(*anatomy, *rib_) : nullptr;
+  const Rib* rib = chosen(context);
   if (!rib) return list;
   const auto add = [&](const char* name, Joint joint, Vec3 at) {
     const bool isHeld = held_ == joint;
     list.push_back({name, joint, isHeld ? heldAt_ : at, isHeld});
   };
   if (rib->number > 0 && !rib->centerline.empty()) add("junction", Joint::junction, rib->centerline.back());
-  if (const Notch* notch = notchOf(*anatomy, *rib_)) add("notch", Joint::notch, notch->position);
+  if (const Notch* notch = notchOf(*context.results->anatomyValue(), *rib_)) add("notch", Joint::notch, notch->position);
   return list;
 }
 
-void CorrectionsPanel::press(const Context& context, Vec3 at, double reach) {
-  held_.reset();
+void CorrectionsPanel::take(const JointHandle& joint, Vec3 at) {
   isMoved_ = false;
-  for (const JointHandle& handle : handles(context))
-    if (distance(handle.at, at) < reach) {
-      held_ = handle.joint;
-      heldAt_ = handle.at;
-      grabbedBy_ = at - handle.at;
-      return;
-    }
+  held_ = joint.joint;
+  heldAt_ = joint.at;
+  grabbedBy_ = at - joint.at;
+}
+
+void CorrectionsPanel::chooseAt(const Context& context, Vec3 at) {
   const Anatomy* anatomy = context.results->anatomyValue();
+  if (!anatomy) return;
   double nearest = kRibReach;
   for (const Rib& rib : anatomy->ribs)
     for (const Vec3& p : rib.centerline)

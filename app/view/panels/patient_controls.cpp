@@ -21,6 +21,7 @@ void patientControls(Context& context) {
     for (const std::string& known : context.recent.paths()) {
       const std::string name = std::filesystem::path(known).filename().string();
       if (ImGui::Selectable((name + "##" + known).c_str())) chosen = known;
+      mark("recent." + name);
       hint(known);
     }
     if (!chosen.empty()) context.open(chosen);

@@ -1,5 +1,6 @@
 #include "app/view/panels/scene_panel.h"
 
+#include "app/view/panels/scene_joints.h"
 #include "app/view/panels/widgets.h"
 #include "app/view/platform/target.h"
 
@@ -65,11 +66,14 @@ void ScenePanel::toolbar(Context& context) {
       ImGui::SetNextItemWidth(110 * context.scale);
       ImGui::Combo("##axis", &o.clipAxis, "sagittal\0coronal\0axial\0");
       ImGui::SliderFloat("##at", &o.clipAt, -200, 200, "%.0f mm");
+      mark("clip.at");
     }
     ImGui::EndPopup();
   }
+}
 
-  // Before and after.
+void ScenePanel::beforeAndAfter(Context& context) {
+  SceneOptions& o = context.scene;
   const float need = 250 * context.scale;
   if (ImGui::GetContentRegionAvail().x > 0) ImGui::SameLine(0, 16 * context.scale);
   if (ImGui::GetContentRegionAvail().x < need) ImGui::NewLine();
@@ -90,9 +94,10 @@ void ScenePanel::setClip(Context& context) {
   o.clip.offset = dot(o.clip.normal, parts_.bounds().first) + o.clipAt;
 }
 
-void ScenePanel::draw(Context& context, float width, float height) {
+void ScenePanel::draw(Context& context, float width, float height, CorrectionsPanel* corrections) {
   ImGui::BeginGroup();
   toolbar(context);
+  if (!corrections) beforeAndAfter(context);
   setClip(context);
   parts_.update(context);
   // A new patient is shown whole, from the front and a little from above and the left.
@@ -104,11 +109,17 @@ void ScenePanel::draw(Context& context, float width, float height) {
     framed_ = patient;
   }
   const float left = ImGui::GetContentRegionAvail().x, below = height - (ImGui::GetCursorPosY());
-  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, held_.has_value());
+  const ViewportInput input = viewport_.item("scene", {std::min(left, width), below}, held_ || (corrections && corrections->isHolding()));
   mark("scene");
-  mouse(context, input);
+  if (corrections && corrections->isOn()) {
+    context.picked.reset();   // the mouse is for ribs
+    moveJoints(context, *corrections, viewport_, input);
+  } else if (held_ || !ImGui::IsMouseHoveringRect(barLow_, barHigh_)) {
+    mouse(context, input);   // a click on the colour bar means no point behind it
+  }
   viewport_.draw(renderer_, parts_.items(context), context.scene.clip, parts_.version(), context.scale);
   overlays(context);
+  if (corrections) drawJoints(context, *corrections, viewport_);
   ImGui::EndGroup();
 }
 
@@ -126,7 +137,6 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
       }
     if (held_) {
       const std::string which = *held_ == 0 ? "" : "second_";
-      grabbedMouse_ = input.at;
       atGrab_ = {plannerSetting(context, which + "lift"), plannerSetting(context, which + "level"), plannerSetting(context, which + "tilt")};
     }
   }
@@ -140,9 +150,7 @@ void ScenePanel::mouse(Context& context, const ViewportInput& input) {
 // A bar follows the mouse in the plane of the picture. Its middle: up and down is its level, forwards its lift; beyond, its tilt.
 void ScenePanel::dragBar(Context& context, const ViewportInput& input) {
   const Camera& camera = viewport_.camera;
-  const double mm = camera.heightAt(norm(grabbedAt_ - camera.eye()));
-  const double dx = (input.at.x - grabbedMouse_.x) * camera.aspect * mm, dy = (grabbedMouse_.y - input.at.y) * mm;
-  const Vec3 moved = camera.right() * dx + camera.up() * dy;
+  const Vec3 moved = camera.onPlane(grabbedAt_, input.at.x, input.at.y) - grabbedAt_;
   const Plan* plan = context.results->planValue();
   const double aside = plan && std::size_t(*held_) < plan->bars.size() ? grabbedAt_.x - plan->bars[*held_].point.x : 0;
   const bool isEnd = std::abs(aside) > kMiddleOfBar && std::abs(camera.right().x) > 0.7;   // from the side one end hides all the bar
@@ -230,6 +238,7 @@ void ScenePanel::overlays(Context& context) {
 
 void ScenePanel::colorBar(Context& context) {
   const char* title = parts_.coloring(context);
+  barLow_ = barHigh_ = {};
   if (!title) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec2 low = viewport_.low();
@@ -253,21 +262,24 @@ void ScenePanel::colorBar(Context& context) {
     const float x = at.x + width * float(i) / 4 - (i == 0 ? 0 : i == 4 ? ImGui::CalcTextSize(text.c_str()).x : ImGui::CalcTextSize(text.c_str()).x / 2);
     list->AddText({x, at.y + height + 0.2f * em}, IM_COL32(200, 205, 212, 255), text.c_str());
   }
-  // A click on it fixes its end, or frees it.
-  const ImVec2 cursor = ImGui::GetCursorPos();
-  ImGui::SetCursorScreenPos(at);
-  ImGui::SetItemAllowOverlap();
-  if (ImGui::IsMouseHoveringRect(at, {at.x + width, at.y + height}) && ImGui::IsMouseClicked(0)) {
-    context.scene.range = float(parts_.high(context));
-    ImGui::OpenPopup("range");
+  // A click on it offers to fix its end, or to free it.
+  barLow_ = at, barHigh_ = {at.x + width, at.y + height};
+  markPlace("colorbar", at, {width, height});
+  if (ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(barLow_, barHigh_)) {
+    ImGui::SetTooltip("Click to fix the range");
+    if (ImGui::IsMouseClicked(0)) {
+      context.scene.range = float(parts_.high(context));
+      ImGui::OpenPopup("range");
+    }
   }
   if (ImGui::BeginPopup("range")) {
     ImGui::Checkbox("Fix the range", &context.scene.isRangeFixed);
+    mark("range.fix");
     ImGui::SetNextItemWidth(150 * context.scale);
     if (ImGui::SliderFloat("##range", &context.scene.range, 0.5f, 60, "%.1f mm")) context.scene.isRangeFixed = true;
+    mark("range");
     ImGui::EndPopup();
   }
-  ImGui::SetCursorPos(cursor);
 }
 
 void ScenePanel::turntable(const Context& context, const std::string& folder, int index, int pictures, int width, int height) {

@@ -1,6 +1,7 @@
 // The scene in 3-D, with its tools.
 #pragma once
 
+#include "app/view/panels/corrections_panel.h"
 #include "app/view/panels/scene_parts.h"
 #include "app/view/render/viewport.h"
 
@@ -9,7 +10,8 @@ namespace pectora::view {
 class ScenePanel {
  public:
   explicit ScenePanel(const Renderer& renderer) : renderer_(renderer) {}
-  void draw(Context& context, float width, float height);
+  /// With `corrections` it shows the chest as it was found, whose joints can be taken with the mouse.
+  void draw(Context& context, float width, float height, CorrectionsPanel* corrections);
   /// Whether a further frame would show more.
   bool isCoarse() const { return viewport_.isCoarse(); }
   /// One picture of a turn about the patient, as a PNG file of the folder: `index` of `pictures`, begun with 0.
@@ -18,6 +20,7 @@ class ScenePanel {
 
  private:
   void toolbar(Context& context);
+  void beforeAndAfter(Context& context);
   void mouse(Context& context, const ViewportInput& input);
   void dragBar(Context& context, const ViewportInput& input);
   void overlays(Context& context);
@@ -33,7 +36,7 @@ class ScenePanel {
   struct {
     double lift = 0, level = 0, tilt = 0;
   } atGrab_;                             // its settings then
-  ImVec2 grabbedMouse_{};
+  ImVec2 barLow_{}, barHigh_{};          // the colour bar on the screen; empty if there is none
   Camera turning_;                       // of the turntable: as it stood at the first picture
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Rgb kSkin{0.87f, 0.72f, 0.62f}, kBone{0.90f, 0.86f, 0.76f}, kCartilage{0.60f, 0.70f, 0.82f}, kBar{0.74f, 0.77f, 0.80f}, kScan{0.62f, 0.70f, 0.66f},
     kMarker{0.98f, 0.62f, 0.25f};
-constexpr double kRibRadius = 4.5, kCartilageRadius = 4.2;   // as they are drawn, mm
+constexpr double kCartilageRadius = 4.2;   // as they are drawn, mm
 
 bool sameLook(const SceneOptions& a, const SceneOptions& b) {
   return a.skin == b.skin && a.hasBones == b.hasBones && a.hasBar == b.hasBar && a.hasScan == b.hasScan && a.hasSprings == b.hasSprings && a.isRangeFixed == b.isRangeFixed &&
@@ -18,9 +18,15 @@ bool sameLook(const SceneOptions& a, const SceneOptions& b) {
 }  // namespace
 
 void SceneParts::update(const Context& context) {
-  updateSkin(context);
-  updateBones(context);
-  updateScan(context);
+  // While a corrected anatomy is on its way to a skin, the same patient's last scene stays.
+  const Results& r = *context.results;
+  const bool isOnTheWay = context.activity.isBusy && !r.skin && r.ct.value && r.ct.value == patientOf_;
+  if (!isOnTheWay) {
+    updateSkin(context);
+    updateBones(context);
+    updateScan(context);
+    patientOf_ = r.skin ? r.ct.value : nullptr;
+  }
   updatePicked(context);
   if (!sameLook(lastOptions_, context.scene)) ++version_;
   lastOptions_ = context.scene;

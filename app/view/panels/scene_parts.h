@@ -5,6 +5,8 @@
 
 namespace pectora::view {
 
+inline constexpr double kRibRadius = 4.5;   ///< as ribs are drawn, mm
+
 class SceneParts {
  public:
   /// Brings all parts up to the results and options.
@@ -41,8 +43,8 @@ class SceneParts {
   double displacementLimit_ = 1, distanceLimit_ = 1;
   bool hasDistance_ = false;
   std::uint64_t version_ = 0;
-  // What each part was made of.
-  std::shared_ptr<const void> skinOf_, sceneOf_, distancesOf_, ribsOf_, movedOf_, scanOf_;
+  // What each part was made of; the patient of the scene's skin.
+  std::shared_ptr<const void> patientOf_, skinOf_, sceneOf_, distancesOf_, ribsOf_, movedOf_, scanOf_;
   float skinPart_ = -1, movedPart_ = -1;
   const void* pickedSprings_ = nullptr;
   int pickedPoint_ = -1;

@@ -10,7 +10,6 @@
 namespace pectora::view {
 namespace {
 
-constexpr float kJointReach = 10;   // units of the layout from a joint's middle to a press that takes it
 constexpr double kJointDepth = 4;   // joints are shown so near to a plane, mm
 constexpr const char* kNames[] = {"Axial", "Sagittal", "Coronal"};
 // Axis of the volume that goes through each plane, and those across and down its picture.
@@ -132,7 +131,7 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
   if (ImGui::IsItemActive()) {
     if (ImGui::IsMouseDown(0) && corrections_.isOn()) {
       const Vec3 at = volume.grid.toPatient(under);
-      if (ImGui::IsItemActivated()) corrections_.press(context, at, kJointReach / scale * context.scale);
+      if (ImGui::IsItemActivated()) press(context, at, kJointReach * context.scale / scale);
       else if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) corrections_.hold(at);
     } else if (ImGui::IsMouseDown(0)) {
       for (int a : {kAcross[plane], kDown[plane]}) at_[a] = std::clamp(v[a], 0, volume.grid.size[a] - 1);
@@ -177,19 +176,21 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
   list->PopClipRect();
 }
 
+// Takes the joint within `reach` mm, or chooses the rib that passes there.
+void SlicesPanel::press(const Context& context, Vec3 at, double reach) {
+  for (const JointHandle& joint : corrections_.handles(context))
+    if (distance(joint.at, at) < reach) return corrections_.take(joint, at);
+  corrections_.chooseAt(context, at);
+}
+
 // The joints of the rib that is being corrected, where they lie near the plane.
 void SlicesPanel::drawJoints(Context& context, const Volume& volume, Plane plane, ImVec2 corner, float scale) {
   const int through = kThrough[plane];
-  const float em = ImGui::GetFontSize(), radius = 0.36f * em;
-  ImDrawList* list = ImGui::GetWindowDrawList();
   for (const JointHandle& handle : corrections_.handles(context)) {
     const Vec3 voxel = volume.grid.toVoxel(handle.at);
     if (std::abs(voxel[through] - at_[through]) * spacingOf(volume, through) > kJointDepth) continue;
-    const ImVec2 mm = onPlane(voxel, plane), at{corner.x + mm.x * scale, corner.y + mm.y * scale};
-    list->AddCircleFilled(at, radius, handle.isHeld ? IM_COL32(255, 220, 130, 255) : IM_COL32(250, 160, 70, 255));
-    list->AddCircle(at, radius, IM_COL32(20, 22, 26, 255), 0, 1.5f * context.scale);
-    list->AddText({at.x + radius + 3, at.y - 0.5f * em}, IM_COL32(255, 200, 130, 255), handle.name.c_str());
-    markPlace(std::string("slice.") + kNames[plane] + "." + handle.name, {at.x - radius, at.y - radius}, {2 * radius, 2 * radius});
+    const ImVec2 mm = onPlane(voxel, plane);
+    drawJoint(handle, {corner.x + mm.x * scale, corner.y + mm.y * scale}, context.scale, std::string("slice.") + kNames[plane]);
   }
 }
 
@@ -225,48 +226,32 @@ void SlicesPanel::draw(Context& context, float width, float height) {
   }
 }
 
-void SlicesPanel::controls(Context& context) {
-  const Volume* volume = context.results->volume();
-  if (!volume) {
-    note("Open a patient first.");
-    return;
-  }
+void SlicesPanel::controls(const Volume& volume, float scale) {
   heading("Grey scale");
   const auto window = [&](const char* label, float center, float wide) {
     if (button(label, std::string("window.") + label)) center_ = center, width_ = wide;
-    ImGui::SameLine(0, 4 * context.scale);
+    ImGui::SameLine(0, 4 * scale);
   };
   window("Soft tissue", 40, 400);
   window("Bone", 400, 1600);
   window("Lung", -500, 1500);
   ImGui::NewLine();
-  ImGui::SetNextItemWidth(-80 * context.scale);
+  ImGui::SetNextItemWidth(-80 * scale);
   ImGui::SliderFloat("Level", &center_, -1000, 1500, "%.0f HU");
-  ImGui::SetNextItemWidth(-80 * context.scale);
+  ImGui::SetNextItemWidth(-80 * scale);
   ImGui::SliderFloat("Window", &width_, 20, 4000, "%.0f HU", ImGuiSliderFlags_Logarithmic);
 
   heading("Planes");
   static constexpr const char* kLabels[] = {"Sagittal", "Coronal", "Axial"};
   for (int a = 0; a < 3; ++a) {
-    ImGui::SetNextItemWidth(-80 * context.scale);
-    ImGui::SliderInt(kLabels[a], &at_[a], 0, volume->grid.size[a] - 1);
+    ImGui::SetNextItemWidth(-80 * scale);
+    ImGui::SliderInt(kLabels[a], &at_[a], 0, volume.grid.size[a] - 1);
     mark(std::string("slice.at.") + kLabels[a]);
   }
   note("The wheel leafs, Ctrl with the wheel zooms, a click moves the planes (but for corrections), a right drag sets the grey scale.");
+}
 
-  if (const auto place = corrections_.controls(context)) goTo(*volume, *place);
-
-  heading("How it is found");
-  for (PluginChoice* plugin : {&context.choices.segmenter, &context.choices.splines}) {
-    const bool isOpen = ImGui::TreeNodeEx(plugin->id.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
-    mark(plugin->id + ".open");
-    hint(context.catalog.summary(plugin->id));
-    if (!isOpen) continue;
-    parameterControls(context, *plugin, plugin->id);
-    ImGui::TreePop();
-  }
-
-  heading("Found in it");
+void SlicesPanel::legend() {
   ImGui::Checkbox("Outlines", &hasOutlines_);
   mark("outlines");
   ImGui::SameLine();
@@ -279,15 +264,6 @@ void SlicesPanel::controls(Context& context) {
     ImGui::Dummy({em, em});
     ImGui::SameLine();
     ImGui::TextUnformatted(readable(structure).c_str());
-  }
-  if (const Anatomy* anatomy = context.results->anatomyValue()) {
-    heading("Figures");
-    for (const Fact& fact : anatomy->facts()) {
-      const double* number = std::get_if<double>(&fact.value);
-      if (!number) continue;
-      const bool isCount = fact.unit.empty() && *number == std::round(*number);
-      row(readable(fact.name).c_str(), (isCount ? std::to_string(int(*number)) : figure(*number)) + (fact.unit.empty() ? "" : " " + fact.unit));
-    }
   }
 }
 

@@ -9,9 +9,15 @@ namespace pectora::view {
 
 class SlicesPanel {
  public:
+  /// Ribs and joints are taken with the mouse by way of `corrections`, which outlives the panel.
+  explicit SlicesPanel(CorrectionsPanel& corrections) : corrections_(corrections) {}
   void draw(Context& context, float width, float height);
-  /// The controls of the left column: grey scale, positions, outlines.
-  void controls(Context& context);
+  /// The controls of the left column: grey scale and positions.
+  void controls(const Volume& volume, float scale);
+  /// What is drawn over the slices, and in which colours.
+  void legend();
+  /// Leafs to a place, LPS mm.
+  void goTo(const Volume& volume, Vec3 place);
 
  private:
   enum Plane { axial, sagittal, coronal };
@@ -37,11 +43,11 @@ class SlicesPanel {
   void fill(const Volume& volume, Plane plane);
   void outline(const Volume& volume, const Anatomy* anatomy, Plane plane);
   void drawPlane(Context& context, const Volume& volume, Plane plane, ImVec2 size);
+  void press(const Context& context, Vec3 at, double reach);
   void drawJoints(Context& context, const Volume& volume, Plane plane, ImVec2 corner, float scale);
   ImVec2 onPlane(Vec3 voxel, Plane plane) const;
   /// Voxel coordinates under a place of the picture, in the plane that is shown.
   Vec3 underPlace(ImVec2 mm, Plane plane) const;
-  void goTo(const Volume& volume, Vec3 place);
 
   PlaneState planes_[3];
   std::shared_ptr<const void> volume_, anatomy_;
@@ -50,7 +56,7 @@ class SlicesPanel {
   float shownCenter_ = 0, shownWidth_ = 0;
   bool hasOutlines_ = true, hasLabels_ = true;
   std::string underCursor_;
-  CorrectionsPanel corrections_;
+  CorrectionsPanel& corrections_;
 };
 
 }  // namespace pectora::view

@@ -65,6 +65,7 @@ std::string readable(const std::string& name) {
   std::string text = name;
   std::replace(text.begin(), text.end(), '_', ' ');
   if (text == "bmi" || text == "fov") return text == "bmi" ? "BMI" : "Field of view";
+  if (text == "lbfgs") return "L-BFGS";
   if (text.starts_with("youngs")) text = "young's" + text.substr(6);
   if (text.starts_with("poissons")) text = "poisson's" + text.substr(8);
   if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));

@@ -18,7 +18,7 @@ void applyTheme(float scale);
 const Fonts& fonts();
 
 inline const ImVec4 kAccent{0.36f, 0.70f, 0.72f, 1}, kMuted{0.60f, 0.65f, 0.70f, 1}, kWarm{0.95f, 0.70f, 0.35f, 1}, kBad{0.94f, 0.45f, 0.42f, 1},
-    kGood{0.48f, 0.78f, 0.55f, 1};
+    kGood{0.48f, 0.78f, 0.55f, 1}, kChosen{0.20f, 0.34f, 0.37f, 1};
 /// Colours of structures in slices and legends, by name: "rib", "sternum", "skin", "pleura" ...
 ImU32 structureColor(const std::string& structure);
 

@@ -38,6 +38,12 @@ Ray Camera::ray(double x, double y) const {
   return {e, normalized(f + right() * ((2 * x - 1) * kTanHalfAngle * aspect) + up() * ((1 - 2 * y) * kTanHalfAngle))};
 }
 
+Vec3 Camera::onPlane(Vec3 through, double x, double y) const {
+  const Ray r = ray(x, y);
+  const Vec3 forward = normalized(target - eye());
+  return r.origin + r.direction * (dot(through - r.origin, forward) / dot(r.direction, forward));
+}
+
 Vec3 Camera::project(Vec3 point) const {
   const Vec3 d = point - eye();
   const double depth = dot(d, normalized(target - eye()));
@@ -45,15 +51,13 @@ Vec3 Camera::project(Vec3 point) const {
   return {0.5 + 0.5 * dot(d, right()) / (s * aspect), 0.5 - 0.5 * dot(d, up()) / s, depth};
 }
 
-double Camera::heightAt(double distanceFromEye) const { return 2 * kTanHalfAngle * distanceFromEye; }
-
 void Camera::orbit(double dx, double dy) {
   yaw -= 3.5 * dx;
   pitch = std::clamp(pitch + 3.5 * dy, -1.55, 1.55);
 }
 
 void Camera::pan(double dx, double dy) {
-  const double mm = heightAt(distance);
+  const double mm = 2 * kTanHalfAngle * distance;   // that the picture's height shows there
   target += right() * (-dx * mm) + up() * (dy * mm);
 }
 

@@ -27,10 +27,10 @@ struct Camera {
   Matrix4 matrix() const;   ///< LPS mm to clip coordinates
   /// Through a place of the picture: x and y from 0 (left, top) to 1.
   Ray ray(double x, double y) const;
+  /// Where that ray meets the plane through a point that is parallel to the picture. The point lies before the eye.
+  Vec3 onPlane(Vec3 through, double x, double y) const;
   /// Where a point stands in the picture; z is its distance along the view, negative behind the eye.
   Vec3 project(Vec3 point) const;
-  /// mm that one height of the picture shows at a distance from the eye.
-  double heightAt(double distanceFromEye) const;
   /// Turns by mouse: parts of the picture's height.
   void orbit(double dx, double dy);
   void pan(double dx, double dy);

@@ -46,7 +46,7 @@ void Viewport::draw(const Renderer& renderer, const std::vector<Item>& items, co
 
 bool Viewport::screen(Vec3 point, ImVec2& at) const {
   const Vec3 p = camera.project(point);
-  at = {low_.x + float(p.x) * size_.x, low_.y + float(p.y) * size_.y};
+  at = place({float(p.x), float(p.y)});
   return p.z > 0 && p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1;
 }
 

@@ -27,8 +27,10 @@ class Viewport {
   void draw(const Renderer& renderer, const std::vector<Item>& items, const ClipPlane& clip, std::uint64_t version, float scale);
   /// Whether the next frame would be finer.
   bool isCoarse() const { return isCoarse_; }
-  /// Where a point of the scene stands on the screen; false behind the eye.
+  /// Where a point of the scene stands on the screen; false behind the eye or outside.
   bool screen(Vec3 point, ImVec2& at) const;
+  /// A place of the picture on the screen.
+  ImVec2 place(ImVec2 part) const { return {low_.x + part.x * size_.x, low_.y + part.y * size_.y}; }
   ImVec2 low() const { return low_; }
   ImVec2 size() const { return size_; }
 

@@ -37,9 +37,12 @@ void Pipeline::update(const Choices& wanted, Clock::time_point since) {
   since_ = since;
   const Step changed = firstDifference(done_, wanted);
   if (changed == Step::nothing && hasFailed_) return;
+  // A spring constant that moves makes no other wall.
+  keepsWall_ = changed == Step::scene && valid_ > Step::scene && results_.sceneValue() && done_.model == wanted.model;
   done_ = wanted;
   valid_ = std::min(valid_, changed);
   runFrom(valid_, Step::plan);
+  keepsWall_ = false;
   if (hasFailed_ || done_.source == Source::none) return;
   // Live where the skin can go on from where it is.
   if (valid_ > Step::motion) return;
@@ -49,6 +52,7 @@ void Pipeline::update(const Choices& wanted, Clock::time_point since) {
 void Pipeline::settle() {
   if (hasFailed_ || done_.source == Source::none) return;
   if (results_.isLive) valid_ = std::min(valid_, Step::motion);
+  if (results_.sceneValue() && !results_.scene.record) valid_ = std::min(valid_, Step::scene);
   runFrom(valid_, Step::comparison);
 }
 
@@ -91,7 +95,8 @@ void Pipeline::runFrom(Step first, Step last) {
 }
 
 void Pipeline::runOne(Step step) {
-  runStep(step, done_, runner_, results_);
+  if (step == Step::scene && keepsWall_) takeEffects(done_, runner_, results_);
+  else runStep(step, done_, runner_, results_);
   if (step == Step::motion && results_.planValue()) solveFromRest();
   show();
 }

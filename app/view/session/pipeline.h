@@ -68,6 +68,7 @@ class Pipeline {
   Choices done_;
   Step valid_ = Step::source;      // everything before this step belongs to done_
   bool hasFailed_ = false;
+  bool keepsWall_ = false;         // the scene that is run takes other effects only
   Results results_;
   std::chrono::steady_clock::time_point since_, shown_;
 

@@ -31,10 +31,15 @@ void correctAnatomy(const Choices& choices, Runner& runner, Results& r) {
   for (const PluginChoice& correction : choices.corrections) r.anatomy = runner.run(correction.id, correction.settings, {{r.anatomy}})[0];
 }
 
-void makeScene(const Choices& choices, Runner& runner, Results& r) {
+std::vector<Handle> effectsOf(const Choices& choices, Runner& runner) {
   std::vector<Handle> effects;
   for (const EffectChoice& effect : choices.effects)
     if (effect.isOn) effects.push_back(runner.run(effect.plugin.id, effect.plugin.settings, {})[0]);
+  return effects;
+}
+
+void makeScene(const Choices& choices, Runner& runner, Results& r) {
+  const std::vector<Handle> effects = effectsOf(choices, runner);
   // A lattice is made of the cage alone, a solid of the CT, too.
   Runner::PortInputs inputs;
   for (const Port& port : runner.ports(choices.model.id)) {
@@ -87,6 +92,13 @@ void compareSurfaces(const Choices& choices, Runner& runner, Results& r) {
 }
 
 }  // namespace
+
+void takeEffects(const Choices& choices, Runner& runner, Results& r) {
+  auto scene = std::make_shared<Scene>(*r.sceneValue());
+  scene->effects.clear();
+  for (const Handle& effect : effectsOf(choices, runner)) scene->effects.push_back(std::dynamic_pointer_cast<const EffectCall>(effect.value));
+  r.scene = {std::move(scene), nullptr};
+}
 
 void runStep(Step step, const Choices& choices, Runner& runner, Results& r) {
   const bool isResult = choices.source == Source::result;

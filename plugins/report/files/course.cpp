@@ -11,8 +11,7 @@ std::string courseCsv(const Motion& motion) {
   std::string csv = "time_s,energy_Nmm,kinetic_energy_Nmm,fastest_mm_per_s,displacement_rms_mm,displacement_max_mm\n";
   for (const Moment& moment : motion.moments) {
     double squares = 0, largest = 0;
-    for (std::size_t i = 0; i < moment.outer.size(); ++i) {
-      const double d = distance(moment.outer[i], motion.scene->outer[i]);
+    for (const double d : skinDisplacement(*motion.scene, moment.outer)) {
       squares += d * d;
       largest = std::max(largest, d);
     }
@@ -27,15 +26,6 @@ std::string coursePvd(const Motion& motion, const std::vector<std::string>& file
   for (std::size_t i = 0; i < files.size(); ++i)
     xml += fmt::format("    <DataSet timestep=\"{:g}\" file=\"{}\"/>\n", motion.moments[i].time, files[i]);
   return xml + "  </Collection>\n</VTKFile>\n";
-}
-
-Mesh skinAt(const Motion& motion, const Moment& moment) {
-  const Scene& scene = *motion.scene;
-  Mesh mesh = layerMesh(scene.rows, scene.columns, moment.outer);
-  PointField displacement{"displacement", "mm", {}};
-  for (std::size_t i = 0; i < moment.outer.size(); ++i) displacement.values.push_back(distance(moment.outer[i], scene.outer[i]));
-  mesh.fields.push_back(std::move(displacement));
-  return mesh;
 }
 
 }  // namespace pectora

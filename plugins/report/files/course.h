@@ -1,4 +1,4 @@
-// A motion in time as a table, and as a series of surfaces.
+// A motion in time as a table, and the list of its surfaces.
 #pragma once
 
 #include "kernel/value/motion.h"
@@ -13,7 +13,5 @@ namespace pectora {
 std::string courseCsv(const Motion& motion);
 /// ParaView's collection (PVD) of one file a moment.
 std::string coursePvd(const Motion& motion, const std::vector<std::string>& files);
-/// The skin at a moment, with the field "displacement" from rest.
-Mesh skinAt(const Motion& motion, const Moment& moment);
 
 }  // namespace pectora

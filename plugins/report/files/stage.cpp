@@ -107,7 +107,7 @@ class Files final : public Stage {
     std::vector<std::string> names;
     for (const Moment& moment : motion.moments) {
       names.push_back(fmt::format("course/skin_{:04}.vtp", names.size()));
-      writeFile(file(names.back()), vtpBytes(skinAt(motion, moment), note));
+      writeFile(file(names.back()), vtpBytes(displacedSkin(*motion.scene, moment.outer), note));
     }
     writeFile(file("course.pvd"), coursePvd(motion, names));
   }

@@ -107,6 +107,80 @@ TEST(Corrections, ByTheMouseChangeTheChestAndCanBeUndone) {
   EXPECT_EQ(openGlErrors(), 0);
 }
 
+TEST(Corrections, ByTheMouseIn3dMoveAJointInThePlaneOfThePicture) {
+  Desktop desk("view_joints_home");
+  desk.openPhantom();
+  desk.click("tab.anatomy");
+  desk.click("anatomy.solid");
+  desk.click("correct");
+
+  // A rib is chosen by a click on it, where it stands free before the others.
+  const Camera& camera = desk.app.camera();
+  const std::vector<Vec3>& line = desk.results().anatomyValue()->rib(Side::left, 6)->centerline;
+  const Vec3 shown = camera.project(line[line.size() * 9 / 10]);
+  EXPECT_FALSE(desk.hand.sees("scene.junction"));
+  desk.click("scene", float(shown.x), float(shown.y));
+  ASSERT_TRUE(desk.hand.sees("scene.junction"));
+  EXPECT_FALSE(desk.context().picked) << "the click means a rib and not the skin behind it";
+
+  // Its end and its notch, drawn across the picture and down.
+  desk.click("correct.notch");
+  for (const std::string joint : {"junction", "notch"}) {
+    const auto place = [&] {
+      return joint == "notch" ? notchAt(*desk.results().anatomyValue(), Side::left, 6) : desk.results().anatomyValue()->rib(Side::left, 6)->centerline.back();
+    };
+    const Vec3 before = place();
+    const auto skin = *desk.results().skin;
+    const Camera stood = camera;
+    const Vec3 at = camera.project(before);
+    const ImVec2 from{float(at.x), float(at.y)}, to{from.x + 0.015f, from.y + 0.01f};
+    desk.hand.frames(3);
+    const auto seen = desk.target->pixels();
+    const ImVec2 low = desk.hand.place("scene", 0, 0), high = desk.hand.place("scene", 1, 1);
+    desk.hand.drag("scene", from, to);
+    // While the anatomy is found anew, the chest stays to be seen: an empty scene differs by more than 5 grey levels.
+    for (bool isFound = false; !isFound; isFound = !desk.context().activity.isBusy) {
+      desk.hand.frames(1);
+      EXPECT_LT(meanDifference(seen, desk.target->pixels(), 1280, {low.x, low.y, high.x - low.x, high.y - low.y}), 2.5);
+    }
+    desk.rest();
+    ASSERT_EQ(desk.results().error, "");
+    // The chest has not turned, and the joint stands where the mouse let it go, at the depth where it was: places of the mouse are whole
+    // pixels, and a script has tenths of a millimetre.
+    EXPECT_EQ(camera.matrix(), stood.matrix());
+    const Vec3 after = place(), forward = normalized(camera.target - camera.eye());
+    const double rounded = 0.05 * std::sqrt(3.0), pixel = std::sqrt(2.0) * distance(camera.onPlane(before, 0, 0), camera.onPlane(before, 0, 1)) / (high.y - low.y);
+    EXPECT_NEAR(dot(after - before, forward), 0, rounded + 1e-9) << joint;
+    EXPECT_LT(distance(after, camera.onPlane(before, to.x, to.y)), rounded + pixel) << joint;
+    EXPECT_GT(distance(after, before), 3);
+    EXPECT_NE(skin, *desk.results().skin);
+    EXPECT_NE(scriptOf(desk.context().choices).find("joint = \"" + joint + "\""), std::string::npos) << scriptOf(desk.context().choices);
+
+    // As in slices it is one step, back and forth.
+    desk.hand.control('z');
+    desk.rest();
+    EXPECT_EQ(distance(place(), before), 0);
+    EXPECT_EQ(skin, *desk.results().skin);
+    desk.hand.control('y');
+    desk.rest();
+    EXPECT_EQ(distance(place(), after), 0);
+  }
+  EXPECT_EQ(desk.context().choices.corrections.size(), 2u);
+
+  // A drag beside the joints turns the chest, and corrects nothing.
+  const Camera stood = camera;
+  desk.hand.drag("scene", {0.05f, 0.9f}, {0.15f, 0.9f});
+  desk.rest();
+  EXPECT_NE(camera.matrix(), stood.matrix());
+  EXPECT_EQ(desk.context().choices.corrections.size(), 2u);
+
+  // Other steps show the operation, with a click that tells of a point.
+  desk.click("tab.bar");
+  EXPECT_FALSE(desk.hand.sees("scene.junction"));
+  EXPECT_EQ(desk.context().scene.part, 1);
+  EXPECT_EQ(openGlErrors(), 0);
+}
+
 TEST(Corrections, ThatCannotBeMadeAreToldAndLeaveTheRest) {
   Desktop desk("view_refused_home");
   desk.openPhantom();

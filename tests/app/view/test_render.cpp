@@ -40,6 +40,16 @@ TEST(Camera, RaysGoThroughWhatItShowsThere) {
   EXPECT_LT(norm(cross(point - ray.origin, ray.direction)), 1e-9);
 }
 
+TEST(Camera, MovesAPointAcrossThePictureAtItsDepth) {
+  Camera camera;
+  camera.target = {10, -20, 30};
+  camera.yaw = 0.7, camera.pitch = -0.4, camera.aspect = 1.6;
+  const Vec3 point{40, -60, 100}, moved = camera.onPlane(point, 0.3, 0.8), at = camera.project(moved);
+  EXPECT_NEAR(at.x, 0.3, 1e-12);
+  EXPECT_NEAR(at.y, 0.8, 1e-12);
+  EXPECT_NEAR(at.z, camera.project(point).z, 1e-9);
+}
+
 TEST(Camera, MatrixAndProjectionAgree) {
   Camera camera;
   camera.yaw = -0.5, camera.pitch = 0.3, camera.aspect = 1.4;

@@ -23,6 +23,31 @@ TEST(LayerMesh, TrianglesFaceOutOfTheBody) {
     EXPECT_LT(cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]).y, 0);
 }
 
+TEST(DisplacedSkin, HasItsPointsElsewhereAndTellsHowFar) {
+  auto scene = std::make_shared<Scene>();
+  scene->rows = 2, scene->columns = 3;
+  flatWall(2, 3, scene->outer, scene->inner);
+  std::vector<Vec3> outer = scene->outer;
+  outer[1] += {3, -4, 12};
+  const Mesh mesh = displacedSkin(*scene, outer);
+  EXPECT_EQ(mesh.points, outer);
+  EXPECT_EQ(mesh.triangles, layerMesh(2, 3, {}).triangles);
+  ASSERT_EQ(mesh.fields.size(), 1u);
+  EXPECT_EQ(mesh.fields[0].name, "displacement");
+  EXPECT_EQ(mesh.fields[0].unit, "mm");
+  EXPECT_EQ(mesh.fields[0].values, (std::vector<double>{0, 13, 0, 0, 0, 0}));
+
+  // It is what a motion leads to.
+  Motion motion;
+  motion.scene = scene, motion.outer = outer, motion.inner = scene->inner;
+  for (const auto& [name, part] : motion.parts()) {
+    if (name != "after") continue;
+    const auto& after = dynamic_cast<const Mesh&>(*part);
+    EXPECT_EQ(after.points, outer);
+    EXPECT_EQ(after.fields.at(0).values, mesh.fields[0].values);
+  }
+}
+
 TEST(SkinThatCopiesBone, MovesAsTheMeanOfTheAnchorsBehindItByTheirNearness) {
   auto scene = std::make_shared<Scene>();
   scene->rows = 2, scene->columns = 3;
