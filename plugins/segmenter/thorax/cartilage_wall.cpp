@@ -41,7 +41,8 @@ double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, dou
 
 std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid, const std::vector<std::vector<double>>& skinRadius,
                                       const std::vector<std::vector<double>>& lung,
-                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface, int firstSlice, double deepestLungMm) {
+                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface, int firstSlice,
+                                      double deepestLungMm) {
   constexpr int angles = PolarGrid::kAngles;
   const int slices = int(skinRadius.size()), stride = std::max(1, int(std::lround(kRowMm / field.spacing().z))), rows = (slices - 1) / stride + 1;
   std::vector<double> radius(std::size_t(rows) * angles, -1);

@@ -23,7 +23,8 @@ class CourseFinder {
  public:
   CourseFinder(Side side, const std::vector<RibCurve>& ribs, const Anatomy& anatomy, const Volume* ct, const WallNormal& wall,
                const CageSettings& settings, const std::function<void()>& poll)
-      : side_(side), ribs_(ribs), anatomy_(anatomy), ct_(ct), wall_(wall), settings_(settings), poll_(poll), scale_(chestScale(anatomy.pleura)) {}
+      : side_(side), ribs_(ribs), anatomy_(anatomy), ct_(ct), wall_(wall), settings_(settings), poll_(poll),
+        scale_(chestScale(anatomy.pleura)) {}
 
   SideCourses find() {
     addTrueRibs();

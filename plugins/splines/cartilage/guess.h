@@ -18,8 +18,8 @@ struct Ends {
 Vec3 arrivalAtSternum(Side side, int rib);
 
 /// How the cartilages of a side differ from the usual: their handles at either end, over the usual one; a turn of their direction of
-/// arrival, seen from the front, positive: more steeply from below; whether their depth follows the skin, not the pleura: on the steep slope
-/// of a narrow trench the skin shows it better.
+/// arrival, seen from the front, positive: more steeply from below; whether their depth follows the skin, not the pleura: on the
+/// steep slope of a narrow trench the skin shows it better.
 struct SideShape {
   double firstHandle = 1, lastHandle = 1, turnDeg = 0;
   bool followsSkin = false;
@@ -31,8 +31,9 @@ struct SideShape {
 std::vector<Vec3> guessCourse(const Ends& ends, const SideShape& shape, double handle, const Anatomy& anatomy);
 
 /// The shape with which all cartilages of a side together cover the most cartilage in the CT and the least of what is none: every
-/// block counts once, between -1 for muscle or air and 1 for cartilage. In one chest cartilages are alike; if each took its own best shape,
-/// it would lie on its neighbour's cartilage. Tried are handles of 0.5 to 2 and turns of -45 to 45 degrees along either layer, the usual shape first.
+/// block counts once, between -1 for muscle or air and 1 for cartilage. In one chest cartilages are alike; if each took its own best
+/// shape, it would lie on its neighbour's cartilage. Tried are handles of 0.5 to 2 and turns of -45 to 45 degrees along either layer, the
+/// usual shape first.
 SideShape bestShape(const std::vector<Ends>& ends, double handle, const Anatomy& anatomy, const WallVoxels& voxels,
                     double cartilageHu, double scale);
 

@@ -23,8 +23,8 @@ struct Course {
 /// The picture: tubes of elliptic section (see sectionSize) along cubic B-splines, 1 where any of them is and 0 elsewhere; their
 /// edges are ramps, wide at first and at last as the CT's blur and the slices' thickness make them. The CT: (v - b) / (c - b), of
 /// a block's value v, with the cartilage's own median c (within -25 and +40 HU of `cartilageHu`) and the surroundings b, a mean over
-/// a ring around the tube for each section and each of 24 directions. The sum of squared differences, weighted by the contrast over
-/// the noise, is lowered by `steps` steps of Gauss and Newton. Unknown are the splines and, if `isShapeFree`, one size for the side
+/// a ring around the tube for each section and each of 24 directions, in which nothing counts as darker than 20 HU. The sum of
+/// squared differences, weighted by the contrast over the noise, is lowered by `steps` steps of Gauss and Newton. Unknown are the splines and, if `isShapeFree`, one size for the side
 /// and for each tube a turn of its section against the wall. Bending, ends far from the rib's end, and ends far from the notch
 /// or from the cartilage that is joined (anywhere on it), have a price. `scale` is the chest's (see chestScale).
 void fitJointly(const WallVoxels& voxels, const WallNormal& wall, std::vector<Course>& courses, double scale, double cartilageHu, int steps,

@@ -84,11 +84,12 @@ TEST(FitJointly, TellsCartilagesApartThatHaveGrownIntoOneAnother) {
 }
 
 TEST(FitJointly, IsNotDrawnIntoAThinMuscleWithFatBehindIt) {
-  // Muscle lies around the tube (14 x 10 mm); 3 mm before its front, at y = 22, fat begins.
+  // A wall between fat and lung: 2 mm of muscle before the tube's front, which lies at y = 25, and 1.5 mm behind its back.
   Volume ct = cartilages({bow});
   for (int k = 0; k < 70; ++k)
-    for (int j = 0; j < 22; ++j)
-      for (int i = 0; i < 110; ++i) ct.hu[ct.grid.index(i, j, k)] = -100;
+    for (int j = 0; j < 60; ++j)
+      for (int i = 0; i < 110; ++i)
+        if (j < 23 || j > 36) ct.hu[ct.grid.index(i, j, k)] = j < 23 ? -100 : -870;
   std::vector<Course> courses{guess(5, lineOf(bow), bow(95))};
   fit(ct, courses, 20);
   double forwards = 0;
