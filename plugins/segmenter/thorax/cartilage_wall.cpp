@@ -41,7 +41,8 @@ double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, dou
 
 std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid, const std::vector<std::vector<double>>& skinRadius,
                                       const std::vector<std::vector<double>>& lung,
-                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface, int firstSlice) {
+                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface, int firstSlice,
+                                      double deepestLungMm) {
   constexpr int angles = PolarGrid::kAngles;
   const int slices = int(skinRadius.size()), stride = std::max(1, int(std::lround(kRowMm / field.spacing().z))), rows = (slices - 1) / stride + 1;
   std::vector<double> radius(std::size_t(rows) * angles, -1);
@@ -55,7 +56,7 @@ std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid,
     for (int n = 0; n < angles; ++n) {
       if (std::abs(PolarGrid::degrees(n)) > kFarthestDeg || skinRadius[s][n] <= 0 || isSternum[row * angles + n]) continue;
       const double r = cartilageRadius(field, grid, firstSlice + int(s), PolarGrid::degrees(n), skinRadius[s][n]), bony = bonySurface[s * angles + n];
-      const bool isShownByLung = std::abs(lung[s][n] - r) < kLungMm;
+      const bool isShownByLung = std::abs(lung[s][n] - r) < kLungMm && lung[s][n] > bony - deepestLungMm;
       if (r > bony - kInsideMm && r < bony + kOutsideMm && !isShownByLung) radius[row * angles + n] = r;
     }
   });

@@ -17,6 +17,7 @@ constexpr double kNeckMm = 45;        // of a rib, from the vertebra to where it
 constexpr double kBonyStiffness = 0.5, kStiffness = 0.02;
 constexpr double kBoneWeight = 0.1;   // of a bony sample beside a sample of lung
 constexpr double kArcMm = 110 * PolarGrid::kStepDeg * kRadians;   // between rays at a usual radius
+constexpr int kCartilageRounds = 3;
 constexpr double kAloneMm = 25, kAloneFactor = 4;   // where no bone or cartilage is so near, lung may lie so many times deeper
 
 /// Polar coordinates of a point about a slice's pole: angle index and radius.
@@ -202,14 +203,19 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
       for (int n = 0; n < angles; ++n)
         if (outside[s][n] > 0) reference.push_back({double(n), double(firstSlice + s), 0.75 * outside[s][n], 1});
   if (reference.empty()) return std::vector<double>(std::size_t(slices) * angles, 0.0);
-  // The surface of the bones, and again with the cartilages that it leads to.
+  // The surface of the bones, and again with the cartilages that it leads to, which lead further into a narrow pit.
   const auto fitReference = [&](const UsualWall& usual) { return fitWall(reference, usual, firstSlice, firstSlice + slices - 1, body.spacing.z, kBonyStiffness); };
-  std::vector<double> radius = fitReference(usualWall(reference, all, outside, firstSlice, body.spacing.z));
-  const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, firstSlice);
-  bony.insert(bony.end(), cartilages.begin(), cartilages.end());
-  reference.insert(reference.end(), cartilages.begin(), cartilages.end());
-  const UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
-  radius = fitReference(usual);
+  UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
+  std::vector<double> radius = fitReference(usual);
+  const std::size_t bones = bony.size(), known = reference.size();
+  for (int round = 0; round < kCartilageRounds; ++round) {
+    const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, firstSlice, settings.deepestMm);
+    bony.resize(bones), reference.resize(known);
+    bony.insert(bony.end(), cartilages.begin(), cartilages.end());
+    reference.insert(reference.end(), cartilages.begin(), cartilages.end());
+    usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
+    radius = fitReference(usual);
+  }
   const std::vector<double> bonySurface = radius;
   const std::vector<char> isAlone = farFrom(bony, firstSlice, slices, body.spacing.z);
   for (int round = 0; round < 5; ++round) {

@@ -72,9 +72,9 @@ struct PleuraSettings {
 };
 
 /// The inner wall in slices firstSlice to lastSlice: radius[(slice - firstSlice) * kAngles + n]. A first surface goes through the bony
-/// wall (or, if there is none, through all lung) and the backs of the cartilages that are seen near it. Lung within `deepestMm` of
-/// it, or outside it, then joins it with a greater weight, and so four times more from the new surface, but never further inside
-/// the first one than twice that, and nowhere that the lung stays behind the ribs (effusion, fat): there the bony wall stands. Where
+/// wall (or, if there is none, through all lung) and, in three rounds, the backs of the cartilages that are seen near it. Lung within
+/// `deepestMm` of it, or outside it, then joins it with a greater weight, and so four times more from the new surface, but never further
+/// inside the first one than twice that, and nowhere that the lung stays behind the ribs (effusion, fat): there the bony wall stands. Where
 /// no bone or cartilage is within 25 mm, nothing but lung shows the wall: it may lie four times as deep, and behind the ribs. The last
 /// surface is cut back to `leastThicknessMm` inside the skin.
 std::vector<double> findPleura(const Field& field, const Body& body, const PolarGrid& grid,

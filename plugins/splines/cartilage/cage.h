@@ -16,11 +16,11 @@ struct CageSettings {
 };
 
 /// Ribs as least-squares splines; cartilages 1-7 from the costochondral junction to their notch; 8-10 to the cartilage
-/// above, as the costal arch. With a CT they are fitted to the cartilage that can be seen there: first those of the sternum
-/// together, then one more at a time, guessed from the one above that is already fitted. Where none can be seen, or without a CT,
-/// a cartilage is guessed: seen from the front a cubic that leaves along the rib, and in depth along the pleura, which shows the shape
-/// of a pit, at the distance that its ends have from it. What is guessed or cannot be built is said in `warnings`.
-/// `poll` is called now and then.
+/// above, as the costal arch. With a CT they are fitted to the cartilage that can be seen there, each side by itself: first those of
+/// the sternum together, from guesses of one shape (see bestShape), then one more at a time, guessed from the one above that is already
+/// fitted. Where none can be seen, or without a CT, a cartilage is as guessed (see guessCourse). What is guessed or cannot be built is
+/// said in `warnings`.
+/// `poll` is called now and then, from either side's thread.
 RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, const CageSettings& settings,
                   std::vector<std::string>& warnings, const std::function<void()>& poll = [] {});
 

@@ -56,9 +56,9 @@ double rmsDistance(const Curve& curve, std::span<const Vec3> points) {
   return points.empty() ? 0 : std::sqrt(sum / double(points.size()));
 }
 
-Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle) {
-  const double reach = handle * distance(a, b);
-  return {3, clampedKnots(4, 3), {a, a + tangentA * reach, b - tangentB * reach, b}};
+Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handleA, double handleB) {
+  const double far = distance(a, b);
+  return {3, clampedKnots(4, 3), {a, a + tangentA * (handleA * far), b - tangentB * (handleB * far), b}};
 }
 
 }  // namespace pectora

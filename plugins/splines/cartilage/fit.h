@@ -14,7 +14,7 @@ Curve fitCurve(std::span<const Vec3> points, int controls);
 double rmsDistance(const Curve& curve, std::span<const Vec3> points);
 
 /// The cubic Hermite curve from `a`, leaving along `tangentA`, to `b`, arriving along `tangentB` (unit vectors), as a clamped
-/// B-spline with four control points; the handles are `handle` times the distance a-b. C'(0) = 3 (P1 - P0).
-Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handle);
+/// B-spline with four control points; the handles are `handleA` and `handleB` times the distance a-b. C'(0) = 3 (P1 - P0).
+Curve hermiteCurve(Vec3 a, Vec3 tangentA, Vec3 b, Vec3 tangentB, double handleA, double handleB);
 
 }  // namespace pectora

@@ -1,10 +1,6 @@
 #include "plugins/splines/cartilage/joint_fit.h"
 
 #include "plugins/splines/cartilage/fit.h"
-#include "plugins/splines/cartilage/section.h"
-#include "plugins/splines/cartilage/wall_voxels.h"
-
-#include "kernel/physics/workers.h"
 
 #include <Eigen/Dense>
 
@@ -17,13 +13,14 @@ namespace {
 
 constexpr double kSectionMm = 2;             // between a curve's sections
 constexpr double kReachMm = 4.5;             // from a tube's surface, what is looked at
-constexpr double kRibMm = 9;                 // around a rib's line, what is not
 constexpr double kSharpen = 0.85, kEdgeMm = 1.4;   // of the picture's edges from step to step; of the sharpest
 constexpr int kStepsABackground = 3;
 constexpr int kSectors = 24;
 constexpr int kWays = 5;                     // in which a section can change
-constexpr double kRingFromMm = 1, kRingToMm = 3.5;                 // around a tube, where its surroundings are measured
-constexpr double kBoneHu = 180, kFatHu = -150;                   // more or less than that counts neither as cartilage nor as surroundings
+constexpr double kRingFromMm = 1, kRingToMm = 2.5;                 // around a tube, where its surroundings are measured
+constexpr double kBoneHu = 180;                                  // more than that counts neither as cartilage nor as surroundings
+// What is darker counts as that: fat behind a thin muscle would make the muscle look like cartilage, and draw the tube into it.
+constexpr double kDarkestHu = 20;
 constexpr double kLeastContrastHu = 36;      // of cartilage to its surroundings
 constexpr double kMuscleBelowHu = 45;        // what cartilage is brighter than muscle
 constexpr double kModelError = 0.3;          // of the picture, against 1
@@ -72,22 +69,14 @@ double medianOf(std::vector<float>& values) {
   return *middle;
 }
 
-std::vector<Vec3> linesOf(const std::vector<Course*>& courses) {
-  std::vector<Vec3> points;
-  for (const Course* c : courses) points.insert(points.end(), c->line.begin(), c->line.end());
-  return points;
-}
-
 class JointFit {
  public:
-  JointFit(const Volume& ct, const Anatomy& anatomy, const std::vector<Course*>& courses, double cartilageHu)
-      : usualScale_(chestScale(anatomy.pleura)), usualHu_(cartilageHu), wall_(anatomy.pleura),
-        voxels_(ct, anatomy, linesOf(courses), kHalfHighMm * usualScale_ + 2 * kReachMm, kRibMm * usualScale_),
-        heads_(voxels_.count(), -1), nearest_(voxels_.count(), {1e300, -1}) {
-    for (Course* c : courses) {
+  JointFit(const WallVoxels& voxels, const WallNormal& wall, std::vector<Course>& courses, double scale, double cartilageHu)
+      : usualScale_(scale), usualHu_(cartilageHu), wall_(wall), voxels_(voxels), heads_(voxels.count(), -1), nearest_(voxels.count(), {1e300, -1}) {
+    for (Course& c : courses) {
       Tube tube;
-      tube.course = c;
-      tube.curve = fitCurve(resamplePolyline(c->line, 40), std::clamp(int(polylineLength(c->line) / kControlMm) + 3, 5, kMostControls));
+      tube.course = &c;
+      tube.curve = fitCurve(resamplePolyline(c.line, 40), std::clamp(int(polylineLength(c.line) / kControlMm) + 3, 5, kMostControls));
       tube.start = tube.curve.at(0);
       tube.first = controls_;
       tube.hu = cartilageHu;
@@ -199,7 +188,7 @@ class JointFit {
         bool isInOther = false;
         for (int o = heads_[near.block]; o >= 0; o = near_[o].next) isInOther = isInOther || (near_[o].tube != t && near_[o].outside < kRingFromMm);
         if (isInOther) continue;
-        sum[near.section * kSectors + near.sector] += std::max(hu, float(kFatHu)), weight[near.section * kSectors + near.sector] += 1;
+        sum[near.section * kSectors + near.sector] += std::max(hu, float(kDarkestHu)), weight[near.section * kSectors + near.sector] += 1;
       }
       if (core.size() > 50) {
         const double middle = medianOf(core);
@@ -312,7 +301,8 @@ class JointFit {
     }
     for (int t = 0; t < int(tubes_.size()); ++t)
       for (int n = 0; n < int(tubes_[t].sections.size()); ++n) {
-        const Near here{0, t, -1, n};
+        Near here{};
+        here.tube = t, here.section = n;
         const SectionSum& sum = sums[tubes_[t].firstSection + n];
         addProduct(here, here, sum.normal, normal);
         for (const auto& [way, unknown, part] : unknownsOf(here)) right[unknown] += part * sum.right[way];
@@ -402,8 +392,8 @@ class JointFit {
   }
 
   double usualScale_, usualHu_, growth_ = 0, noise_ = 18;   // growth: of all tubes, as a logarithm
-  WallNormal wall_;
-  WallVoxels voxels_;
+  const WallNormal& wall_;
+  const WallVoxels& voxels_;
   std::vector<Tube> tubes_;
   int controls_ = 0, sections_ = 0;                // of all tubes
   std::vector<Near> near_;
@@ -413,13 +403,9 @@ class JointFit {
 
 }  // namespace
 
-void fitJointly(const Volume& ct, const Anatomy& anatomy, std::vector<Course>& courses, double cartilageHu, int steps, bool isShapeFree) {
-  parallelFor(2, [&](std::size_t half) {
-    std::vector<Course*> own;
-    for (Course& c : courses)
-      if (c.side == (half ? Side::left : Side::right)) own.push_back(&c);
-    if (!own.empty()) JointFit(ct, anatomy, own, cartilageHu).run(steps, isShapeFree);
-  });
+void fitJointly(const WallVoxels& voxels, const WallNormal& wall, std::vector<Course>& courses, double scale, double cartilageHu, int steps,
+                bool isShapeFree) {
+  JointFit(voxels, wall, courses, scale, cartilageHu).run(steps, isShapeFree);
 }
 
 }  // namespace pectora

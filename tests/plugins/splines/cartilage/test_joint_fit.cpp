@@ -44,7 +44,13 @@ Volume cartilages(const std::vector<Way>& ways) {
   return ct;
 }
 
-Course guess(int rib, std::vector<Vec3> line, Vec3 end) { return {.side = Side::left, .rib = rib, .line = std::move(line), .end = end}; }
+Course guess(int rib, std::vector<Vec3> line, Vec3 end) { return {.rib = rib, .line = std::move(line), .end = end}; }
+
+// In all of the CT, cartilage of 100 HU, no pleura.
+void fit(const Volume& ct, std::vector<Course>& courses, int steps) {
+  const std::vector<Vec3> corners{ct.grid.toPatient({0, 0, 0}), ct.grid.toPatient({109, 59, 69})};
+  fitJointly(WallVoxels(ct, Anatomy{}, corners, 0, 0), WallNormal({}), courses, 1, 100, steps, true);
+}
 
 double rmsBetween(const std::vector<Vec3>& points, const std::vector<Vec3>& line) {
   double sum = 0;
@@ -60,7 +66,7 @@ double rmsBetween(const std::vector<Vec3>& points, const std::vector<Vec3>& line
 
 TEST(FitJointly, FollowsABowThroughMuscleFromAStraightGuess) {
   std::vector<Course> courses{guess(5, {bow(15), bow(55) - Vec3{0, 0, 8}, bow(95)}, bow(95))};
-  fitJointly(cartilages({bow}), Anatomy{}, courses, 100, 20, true);
+  fit(cartilages({bow}), courses, 20);
   // Half of a voxel; the guess is 8 mm off in the middle.
   EXPECT_LT(rmsBetween(courses[0].line, lineOf(bow)), 0.5);
   EXPECT_NEAR(courses[0].likeness, 1, 0.4);
@@ -72,16 +78,31 @@ TEST(FitJointly, TellsCartilagesApartThatHaveGrownIntoOneAnother) {
   const Way below = [](double x) { return Vec3{x, 30, 26 + 6 * std::sin(M_PI * (x - 15) / 80)}; };
   const auto straight = [](const Way& way) { return std::vector<Vec3>{way(15), lerp(way(15), way(95), 0.5), way(95)}; };
   std::vector<Course> courses{guess(5, straight(above), above(95)), guess(6, straight(below), below(95))};
-  fitJointly(cartilages({above, below}), Anatomy{}, courses, 100, 20, true);
+  fit(cartilages({above, below}), courses, 20);
   EXPECT_LT(rmsBetween(courses[0].line, lineOf(above)), 0.7);
   EXPECT_LT(rmsBetween(courses[1].line, lineOf(below)), 0.7);
+}
+
+TEST(FitJointly, IsNotDrawnIntoAThinMuscleWithFatBehindIt) {
+  // A wall between fat and lung: 2 mm of muscle before the tube's front, which lies at y = 25, and 1.5 mm behind its back.
+  Volume ct = cartilages({bow});
+  for (int k = 0; k < 70; ++k)
+    for (int j = 0; j < 60; ++j)
+      for (int i = 0; i < 110; ++i)
+        if (j < 23 || j > 36) ct.hu[ct.grid.index(i, j, k)] = j < 23 ? -100 : -870;
+  std::vector<Course> courses{guess(5, lineOf(bow), bow(95))};
+  fit(ct, courses, 20);
+  double forwards = 0;
+  for (const Vec3& p : courses[0].line) forwards += (30 - p.y) / double(courses[0].line.size());
+  // A third of a voxel.
+  EXPECT_LT(std::abs(forwards), 0.33);
 }
 
 TEST(FitJointly, EndsWhereAHandHasSetTheNotch) {
   const Vec3 given = bow(95) + Vec3{0, 0, 4};
   std::vector<Course> courses{guess(5, {bow(15), bow(55), given}, given)};
   courses[0].isEndGiven = true;
-  fitJointly(cartilages({bow}), Anatomy{}, courses, 100, 20, true);
+  fit(cartilages({bow}), courses, 20);
   EXPECT_LT(distance(courses[0].line.back(), given), 0.5);
 }
 
@@ -91,7 +112,7 @@ TEST(FitJointly, SeesNothingInMuscleOrAir) {
   for (const int hu : {40, -1000}) {
     ct.hu.assign(ct.grid.voxels(), std::int16_t(hu));
     std::vector<Course> courses{guess(5, {bow(15), bow(95)}, bow(95))};
-    fitJointly(ct, Anatomy{}, courses, 100, 14, true);
+    fit(ct, courses, 14);
     EXPECT_LT(courses[0].likeness, 0.1) << hu;
   }
 }
@@ -103,7 +124,7 @@ TEST(FitJointly, ComesOutTheSameWithAnyNumberOfThreads) {
   for (const int count : {1, 3}) {
     setThreads(count);
     std::vector<Course> courses{guess(5, {bow(15), bow(95)}, bow(95))};
-    fitJointly(ct, Anatomy{}, courses, 100, 5, true);
+    fit(ct, courses, 5);
     lines.push_back(courses[0].line);
   }
   setThreads(before);

@@ -67,13 +67,14 @@ TEST(FitCurve, TakesAsFewAsFourPoints) {
 
 TEST(HermiteCurve, HasTheAskedEndsAndTangents) {
   const Vec3 a{90, -80, -150}, b{18, -100, -120}, ta = normalized({-1, -0.4, -0.8}), tb = normalized({-1, 0, 0.9});
-  const Curve curve = hermiteCurve(a, ta, b, tb, 0.4);
+  const Curve curve = hermiteCurve(a, ta, b, tb, 0.4, 0.2);
   EXPECT_EQ(curve.at(0), a);
   EXPECT_LT(distance(curve.at(1), b), 1e-12);
   EXPECT_NEAR(dot(normalized(curve.derivative(0)), ta), 1, 1e-12);
   EXPECT_NEAR(dot(normalized(curve.derivative(1)), tb), 1, 1e-12);
   // C'(0) = 3 (P1 - P0).
   EXPECT_NEAR(norm(curve.derivative(0)), 3 * 0.4 * distance(a, b), 1e-9);
+  EXPECT_NEAR(norm(curve.derivative(1)), 3 * 0.2 * distance(a, b), 1e-9);
 }
 
 TEST(BuildCage, JoinsTrueRibsToTheSternumAndFalseOnesToTheArch) {
