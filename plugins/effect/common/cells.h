@@ -27,7 +27,7 @@ CellModuli moduliOf(double youngsModulusKPa, double poissonsRatio);
 std::unique_ptr<Term> makeCellTerm(std::string name, const System& system, const std::vector<CellModuli>& cells);
 
 /// The same cells where nothing but the volume meets resistance, V kappa/2 (Jm - 1)^2, with kappa = `bulk`, MPa: no quadrature is needed. Throws
-/// Error naming the first cell without positive volume at rest. The projected Hessian leaves out how the pressure turns with the cell's faces.
+/// Error as makeCellTerm. The projected Hessian leaves out how the pressure turns with the cell's faces.
 std::unique_ptr<Term> makeVolumeTerm(std::string name, const System& system, double bulk);
 
 }  // namespace pectora

@@ -51,6 +51,24 @@ class CellRows {
   Grid grid_;
 };
 
+// The least volume that a cell has at a point of quadrature, times their number: less than nothing where the cell is folded. `x`: its corners.
+double leastVolume(const Vec3 (&x)[8]) {
+  double least = INFINITY;
+  for (int q = 0; q < kPoints; ++q) {
+    // Derivatives of the trilinear shape along columns, rows and layers.
+    Vec3 along[3];
+    for (int a = 0; a < 8; ++a)
+      for (int j = 0; j < 3; ++j) {
+        double share = (a >> j & 1) ? 1 : -1;
+        for (int k = 0; k < 3; ++k)
+          if (k != j) share *= (a >> k & 1) ? kPlace[q >> k & 1] : 1 - kPlace[q >> k & 1];
+        along[j] += x[a] * share;
+      }
+    least = std::min(least, -dot(along[0], cross(along[1], along[2])));
+  }
+  return least;
+}
+
 // The volumes at rest, and k = kappa / V0 of the energy 1/2 k (V - V0)^2.
 struct RestVolumes {
   CellRows rows;
@@ -265,15 +283,16 @@ class VolumeTerm final : public Term {
     rest_.rows.forEachRow(0, rest_.rows.grid().rows(), [&](const CellRowPlace& p) {
       volumes(count, CellRows::corners(system.rest, p), &rest_.volume[p.cell], {room.data(), count});
       for (std::size_t i = 0; i < count; ++i) {
-        const double volume = rest_.volume[p.cell + i];
-        if (!(volume > 0)) {
+        Vec3 corners[8];
+        for (int a = 0; a < 8; ++a) corners[a] = system.rest[p.nodes[a >> 1] + i + std::size_t(a & 1)];
+        if (const double least = leastVolume(corners); !(least > 0)) {
           const std::size_t point = p.nodes[0] + i, columns = count + 1, rows = std::size_t(rest_.rows.grid().rows());
           throw Error("a cell of the wall has no positive volume at rest, or is folded")
-              .given(fmt::format("{:.3g} mm^3", volume))
+              .given(fmt::format("{:.3g} mm^3 at one of its points", least / kPoints))
               .at(fmt::format("the cell inward of layer {}, row {}, column {}", point / (rows * columns), point / columns % rows, point % columns))
               .advise("Use a wider spacing of the model, or fewer cells through the wall");
         }
-        rest_.stiffness[p.cell + i] = bulk / volume;
+        rest_.stiffness[p.cell + i] = bulk / rest_.volume[p.cell + i];
       }
     });
     VolumeHessian(rest_).addBound(system.rest, bound_);

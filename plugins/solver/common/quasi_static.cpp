@@ -29,9 +29,7 @@ class QuasiStatic final : public Session {
  public:
   QuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser, int stepIterations,
               Acceleration acceleration)
-      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations), acceleration_(acceleration) {
-    if (Newton::isFor(system)) predictor_ = std::make_unique<Newton>(system, acceleration.metric);
-  }
+      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations), acceleration_(acceleration), isPredicted_(Newton::isFor(system)) {}
 
   void takeOver(Session& before) override {
     auto* other = dynamic_cast<QuasiStatic*>(&before);
@@ -67,7 +65,7 @@ class QuasiStatic final : public Session {
     NodeVectors& x = solution.positions;
     const int most = solution.iterations + settings_.maxIterations;
     const double way = movement.longestWay();
-    const double wholeStep = 1 / std::max(1.0, std::ceil(way / (predictor_ ? settings_.loadStep : 0.1 * settings_.loadStep)));
+    const double wholeStep = 1 / std::max(1.0, std::ceil(way / (isPredicted_ ? settings_.loadStep : 0.1 * settings_.loadStep)));
     const double leastStep = wholeStep * kLeastPartOfStep;
     double t = 0, step = wholeStep;
     int halved = 0;
@@ -76,8 +74,10 @@ class QuasiStatic final : public Session {
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
       NodeVectors trial = x;
       movement.apply(next, trial);
-      if (predictor_ && (!movement.isFromStart() || acceleration_.predictsFromStart))
+      if (isPredicted_ && (!movement.isFromStart() || acceleration_.predictsFromStart)) {
+        if (!predictor_) predictor_ = std::make_unique<Newton>(system_, acceleration_.metric);
         predictor_->predict(objective, x, trial, acceleration_.forcing, [&] { host.checkCancel(); });
+      }
       // From a given start there is no path to keep to, so that the last step may end where it will.
       const NodeVectors predicted = movement.isFromStart() ? NodeVectors() : trial;
       const bool isFree = isLast && movement.isFromStart();
@@ -86,7 +86,7 @@ class QuasiStatic final : public Session {
       Outcome outcome = minimise(objective, trial, end, tolerance, isFree ? left : std::min(left, stepIterations_), next, solution, host);
       const bool isExhausted = solution.iterations >= most;
       const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end.isWithin(kLooseTolerance));
-      const bool isOnCourse = isLeast || !predictor_ || movement.isFromStart() ||
+      const bool isOnCourse = isLeast || !isPredicted_ || movement.isFromStart() ||
                               largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
       if ((isNear && isOnCourse) || isLeast || isExhausted) {
         x = std::move(trial);
@@ -156,7 +156,8 @@ class QuasiStatic final : public Session {
   std::unique_ptr<Minimiser> minimiser_;
   int stepIterations_;
   Acceleration acceleration_;
-  std::unique_ptr<Newton> predictor_;   // null if an effect has no Hessian
+  bool isPredicted_;                    // every effect has a Hessian
+  std::unique_ptr<Newton> predictor_;   // made when it is first needed
 };
 
 }  // namespace

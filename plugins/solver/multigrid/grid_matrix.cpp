@@ -72,7 +72,10 @@ void GridMatrix::finish() {
   });
 }
 
-void GridMatrix::keepDiagonal() { offsets_.clear(); }
+void GridMatrix::keepInverseDiagonal() {
+  offsets_.clear();
+  diagonal_ = {};
+}
 
 template <class F>
 void GridMatrix::forEachRowBlock(F&& f) const {

@@ -41,8 +41,8 @@ class GridMatrix {
   void addDiagonal(const std::vector<Symmetric3>& blocks);
   /// Inverts the blocks on the diagonal. To be called once all is added.
   void finish();
-  /// Forgets all blocks beside the diagonal.
-  void keepDiagonal();
+  /// Forgets all that multiplyInverseDiagonal does without.
+  void keepInverseDiagonal();
 
   /// y = A x. The bits do not depend on the number of threads.
   void multiply(const SingleVectors& x, SingleVectors& y) const;

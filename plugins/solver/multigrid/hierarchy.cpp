@@ -48,9 +48,10 @@ void setRandom(SingleVectors& v) {
 }  // namespace
 
 struct Hierarchy::Level {
-  explicit Level(GridShape shape) : matrix(shape), x(0), b(0), residual(shape.points()), step(shape.points()), roughest(shape.points()) {}
+  explicit Level(GridShape shape) : matrix(shape), roughest(shape.points()) {}
   GridMatrix matrix;
-  SingleVectors x, b, residual, step;   // x and b of coarse grids only
+  SingleVectors x, b;                 // of coarse grids
+  SingleVectors residual, step;       // of those that see what others left
   SingleVectors roughest;             // where D^-1 A acts most strongly
   float highest = 2;                  // of the spectrum of D^-1 A
 };
@@ -110,7 +111,7 @@ void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& 
   // The upper ends of the spectra, by power iteration: from a start that is rough everywhere, or from where the last one ended.
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = *levels_[i];
-    SingleVectors &v = level.roughest, product(level.residual);
+    SingleVectors &v = level.roughest, product(v.size());
     if (before.empty()) setRandom(v);
     else v = std::move(before[i]->roughest);
     double factor = 2;
@@ -125,7 +126,8 @@ void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& 
     }
     if (!std::isfinite(factor)) setRandom(v);
     level.highest = 1.1f * float(std::isfinite(factor) ? factor : 2);
-    if (i < kAdditiveLevels) level.matrix.keepDiagonal();
+    if (i < kAdditiveLevels) level.matrix.keepInverseDiagonal();
+    else level.residual = level.step = SingleVectors(v.size());
   }
 }
 

@@ -91,7 +91,7 @@ TEST(Region, KeepsTheCellsOfASolidWall) {
   scene.outerMass = scene.innerMass = std::vector<double>(20, 1);
   scene.betweenMass = {scene.outerMass};
   for (int i = 0; i < scene.cells(); ++i) scene.cellTissue.push_back(std::uint8_t(i));
-  scene.anchors = {{.point = 7}, {.point = 0}, {.point = 13}};
+  scene.anchors = {{.point = 7, .rest = {}}, {.point = 0, .rest = {}}, {.point = 13, .rest = {}}};
   std::vector<std::size_t> anchors;
   const auto part = crop(scene, {1, 4, 2, 4}, anchors);
   EXPECT_EQ(part->outer, (std::vector<Vec3>{{7, 0, 0}, {8, 0, 0}, {12, 0, 0}, {13, 0, 0}, {17, 0, 0}, {18, 0, 0}}));

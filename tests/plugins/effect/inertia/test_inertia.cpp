@@ -44,7 +44,7 @@ class InTime : public testing::TestWithParam<Follower> {
 INSTANTIATE_TEST_SUITE_P(Solver, InTime,
                          testing::Values(Follower{"solver.verlet", "", 2, 1}, Follower{"solver.semi_implicit", "", 2, 1},
                                          Follower{"solver.implicit", "euler", 1, 1}, Follower{"solver.implicit", "bdf2", 2, 2}),
-                         [](const auto& info) { return std::string(info.param.id).substr(7) + info.param.scheme; });
+                         [](const auto& follower) { return std::string(follower.param.id).substr(7) + follower.param.scheme; });
 
 void setMotion(Wall& wall, double duration, double lifting, double damping) {
   wall.scene->effects.push_back(call("effect.inertia", {{"duration", duration}, {"lifting", lifting}, {"damping", damping}, {"interval", 0.01}}));
