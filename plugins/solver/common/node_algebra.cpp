@@ -11,9 +11,11 @@ namespace {
 
 constexpr std::size_t kPiece = 2048;   // nodes; a few vectors of them fit the nearest caches
 
+std::size_t piecesOf(std::size_t count) { return (count + kPiece - 1) / kPiece; }
+
 template <class F>
 void forEachPiece(std::size_t count, F&& f) {
-  parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
+  parallelFor(piecesOf(count), [&](std::size_t piece) {
     f(piece, piece * kPiece, std::min(count, (piece + 1) * kPiece));
   });
 }
@@ -54,7 +56,7 @@ PECTORA_WIDE void scale(float s, const float* v, float* to, std::size_t count) {
 
 template <class A, class B>
 double dot(const A& a, const B& b, std::size_t count) {
-  std::vector<double> sums((count + kPiece - 1) / kPiece);
+  std::vector<double> sums(piecesOf(count));
   forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
     sums[piece] = dot(&a.x[begin], &b.x[begin], n) + dot(&a.y[begin], &b.y[begin], n) + dot(&a.z[begin], &b.z[begin], n);
@@ -68,7 +70,7 @@ template double dot(const NodeVectors&, const SingleVectors&, std::size_t);
 template double dot(const SingleVectors&, const SingleVectors&, std::size_t);
 
 std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count) {
-  std::vector<double> sums((count + kPiece - 1) / kPiece * vs.size()), totals(vs.size());
+  std::vector<double> sums(piecesOf(count) * vs.size()), totals(vs.size());
   forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
     double* sum = sums.data() + piece * vs.size();
@@ -112,7 +114,7 @@ void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
 template <class Vectors>
 double longest(const Vectors& v, std::size_t count) {
   using Number = typename decltype(v.x)::value_type;
-  std::vector<Number> squared((count + kPiece - 1) / kPiece);
+  std::vector<Number> squared(piecesOf(count));
   forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     Number largest = 0;
     for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
@@ -130,7 +132,7 @@ double negligibleForce(const System& system) {
 
 Residual largestResidual(const System& system, const NodeVectors& gradient) {
   const std::size_t count = system.freeNodes;
-  std::vector<Residual> found((count + kPiece - 1) / kPiece);
+  std::vector<Residual> found(piecesOf(count));
   forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     double squared = 0;
     for (std::size_t i = begin; i < end; ++i) {
