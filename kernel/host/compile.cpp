@@ -76,8 +76,8 @@ std::vector<Vec3> drivenNodes(const Scene& scene, const Compiled& compiled, cons
   const std::size_t count = scene.anchors.size();
   std::vector<Vec3> positions(count);
   positions.reserve(compiled.system->rest.size() - compiled.system->freeNodes);
-  parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
-    for (std::size_t i = piece * kPiece; i < std::min(count, (piece + 1) * kPiece); ++i) positions[i] = plan.moved(scene.anchors[i], reached * t);
+  forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions[i] = plan.moved(scene.anchors[i], reached * t);
   });
   for (const auto& [steering, guides] : compiled.steering)
     if (steering.displacement)

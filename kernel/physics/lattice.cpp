@@ -4,10 +4,13 @@
 #include "kernel/physics/hessian.h"
 #include "kernel/physics/lattice_rows.h"
 #include "kernel/physics/springs.h"
+#include "kernel/physics/stencil_row.h"
 #include "kernel/physics/workers.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace pectora {
 namespace {
@@ -30,6 +33,8 @@ class Grid {
   std::size_t nodes() const { return std::size_t(layers_) * rows_ * columns_; }
   std::size_t blocks() const { return blocks_; }
 
+  std::size_t node(Layer layer, int row, int column) const { return (std::size_t(layer == Layer::inner ? layers_ - 1 : 0) * rows_ + row) * columns_ + column; }
+
   /// The springs of stencil entry `entry` that start in `row`.
   struct Run {
     std::size_t near, far, count, column;   // first nodes, how many, first column
@@ -38,21 +43,14 @@ class Grid {
     const StencilSpring& s = stencil_[entry];
     const int other = row + s.rows, first = std::max(0, -s.columns), end = std::min(columns_, columns_ - s.columns);
     if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0};
-    const auto node = [&](Layer layer, int r, int c) { return (std::size_t(layer == Layer::inner ? layers_ - 1 : 0) * rows_ + r) * columns_ + c; };
     return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first), std::size_t(first)};
   }
 
-  /// Skin and pleura in the rows that springs which start in some rows reach, numbered one after the other.
-  struct Window {
-    std::size_t first[2];   // nodes, of skin and pleura
-    std::size_t nodes;      // of both
-    std::size_t local(std::size_t node) const { return node - first[1] < nodes / 2 ? nodes / 2 + node - first[1] : node - first[0]; }
+  /// The rows that springs which start in rows [begin, end) reach.
+  struct Rows {
+    int first, end;
   };
-  Window window(int begin, int end) const {
-    const int from = std::max(0, begin - reach_), to = std::min(rows_, end + reach_);
-    const std::size_t first = std::size_t(from) * columns_;
-    return {{first, std::size_t(layers_ - 1) * rows_ * columns_ + first}, 2 * std::size_t(to - from) * columns_};
-  }
+  Rows reached(int begin, int end) const { return {std::max(0, begin - reach_), std::min(rows_, end + reach_)}; }
 
   /// Calls f(block, first row, end row) for every block, at most one of two neighbours at a time.
   template <class F>
@@ -141,9 +139,12 @@ class LatticeHessian final : public Hessian {
 class LatticeTerm final : public Term {
  public:
   LatticeTerm(std::string name, const System& system, std::vector<StencilSpring> stencil)
-      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(grid_.nodes()), restSingle_(grid_.nodes()) {
+      : name_(std::move(name)), grid_(system, std::move(stencil)), rest_(grid_.nodes()), restSingle_(grid_.nodes()), aside_(grid_.stencil()) {
     for (std::size_t i = 0; i < rest_.size(); ++i) rest_.set(i, system.rest[i]);
     take(rest_, rest_[0], restSingle_);
+    std::stable_sort(aside_.begin(), aside_.end(), [](const StencilSpring& a, const StencilSpring& b) { return a.columns < b.columns; });
+    for (const StencilSpring& s : aside_)
+      while (beyond_ < std::size_t(std::abs(s.columns))) beyond_ += kChunk;
   }
 
   std::string name() const override { return name_; }
@@ -257,41 +258,87 @@ class LatticeTerm final : public Term {
   // Returns false, and has done nothing, where a spring has no direction or a number is not finite.
   bool evaluateBlockRoughly(const NodeVectors& positions, int begin, int end, NodeVectors& gradient, BlockSums& sums) const {
     const std::size_t columns = grid_.columns();
-    const Grid::Window w = grid_.window(begin, end);
-    // Of skin and pleura in these rows and those that springs reach from them: movement and gradient; and a row's sums.
-    thread_local std::vector<float> room;
-    room.resize(std::max(room.size(), 6 * w.nodes + 6 * columns));
-    std::fill_n(&room[3 * w.nodes], 3 * w.nodes + 6 * columns, 0.0f);
-    const auto vectors = [&](std::size_t first, std::size_t stride) { return Row<float>{&room[first], &room[first + stride], &room[first + 2 * stride]}; };
-    const Row<float> moved = vectors(0, w.nodes), forces = vectors(3 * w.nodes, w.nodes), pull = vectors(6 * w.nodes, columns);
-    float *twice = pull.z + columns, *greatest = twice + columns, *degenerate = greatest + columns;
-    const std::size_t half = w.nodes / 2;
-    for (std::size_t side : {0, 1}) subtractRows(half, rowOf(positions, w.first[side]), rowOf(rest_, w.first[side]), at(moved, side * half));
-    grid_.forEachRun(begin, end, [&](const Grid::Run& r, std::size_t entry) {
-      const StencilSpring& s = grid_.stencil()[entry];
-      const std::size_t n = w.local(r.near), f = w.local(r.far);
-      springForces({r.count, constant(at(moved, n)), constant(at(moved, f)), rowOf(restSingle_, r.near), rowOf(restSingle_, r.far),
-                    float(s.stiffnessNPerMm), float(s.compression)},
-                   at(forces, n), pull, {twice + r.column, greatest + r.column, degenerate + r.column});
-      addRow(r.count, constant(pull), at(forces, f));
+    const Grid::Rows rows = grid_.reached(begin, end);
+    thread_local Room room;
+    room.setSize(std::size_t(rows.end - rows.first), columns, beyond_);
+    forEachRow(rows, [&](Layer layer, int row, std::size_t node) {
+      const std::size_t place = room.place(layer, row - rows.first);
+      subtractRows(columns, rowOf(positions, node), rowOf(rest_, node), at(room.moved, place));
+      const ConstRow<float> rest = rowOf(restSingle_, node);
+      std::copy_n(rest.x, columns, room.rest.x + place);
+      std::copy_n(rest.y, columns, room.rest.y + place);
+      std::copy_n(rest.z, columns, room.rest.z + place);
     });
-    double energy = 0, largest = 0;
-    bool isSound = true;
+    bool isDegenerate = false;
+    std::vector<RowEntry> entries;
+    for (int row = begin; row < end; ++row)
+      for (const Layer layer : {Layer::outer, Layer::inner}) {
+        entries.clear();
+        for (const StencilSpring& s : aside_) {
+          const std::ptrdiff_t first = std::max(0, -s.columns), last = std::ptrdiff_t(columns) - std::max(0, s.columns);
+          if (s.from != layer || row + s.rows < rows.first || row + s.rows >= rows.end || first >= last) continue;
+          const std::ptrdiff_t far = std::ptrdiff_t(room.place(s.to, row + s.rows - rows.first)) - std::ptrdiff_t(room.place(layer, row - rows.first)) + s.columns;
+          entries.push_back({far, first, last, float(s.stiffnessNPerMm), float(s.stiffnessNPerMm * s.compression)});
+        }
+        const std::size_t place = room.place(layer, row - rows.first);
+        isDegenerate |= addRowForces({columns, entries.data(), entries.data() + entries.size(), constant(at(room.moved, place)), constant(at(room.rest, place)),
+                                      at(room.forces, place), room.twiceEnergy, room.largestSquared});
+      }
     for (std::size_t c = 0; c < columns; ++c) {
-      energy += 0.5 * double(twice[c]);
-      largest = std::max(largest, double(greatest[c]));
-      isSound = isSound && degenerate[c] == 0;
+      sums.energy += 0.5 * double(room.twiceEnergy[c]);
+      sums.largest = std::max(sums.largest, std::sqrt(double(room.largestSquared[c])));
     }
-    if (!isSound || !std::isfinite(energy)) return false;
-    sums = {energy, std::sqrt(largest)};
-    for (std::size_t side : {0, 1}) addRow(half, constant(at(forces, side * half)), rowOf(gradient, w.first[side]));
+    if (isDegenerate || !std::isfinite(sums.energy)) {
+      sums = {};
+      return false;
+    }
+    forEachRow(rows, [&](Layer layer, int row, std::size_t node) {
+      addRow(columns, constant(at(room.forces, room.place(layer, row - rows.first))), rowOf(gradient, node));
+    });
     return true;
   }
+
+  // Calls f(layer, row, its first node) for skin and pleura.
+  template <class F>
+  void forEachRow(Grid::Rows rows, F&& f) const {
+    for (const Layer layer : {Layer::outer, Layer::inner})
+      for (int row = rows.first; row < rows.end; ++row) f(layer, row, grid_.node(layer, row, 0));
+  }
+
+  // Skin and pleura of some rows in single precision, with what springs reach beyond the columns; and what columns add up.
+  struct Room {
+    Row<float> moved, rest, forces;
+    float *twiceEnergy, *largestSquared;
+
+    void setSize(std::size_t rows, std::size_t columns, std::size_t beyond) {
+      const std::size_t whole = (columns + kChunk - 1) / kChunk * kChunk;
+      stride_ = whole + beyond;
+      layer_ = rows * stride_;
+      beyond_ = beyond;
+      const std::size_t all = beyond + 2 * layer_ + kSkew;
+      numbers_.resize(9 * all + 2 * whole + kChunk);
+      // Rows begin where registers do.
+      float* next = numbers_.data() + (kChunk - reinterpret_cast<std::uintptr_t>(numbers_.data()) / sizeof(float) % kChunk) % kChunk;
+      const auto take = [&](std::size_t count, float value) { return std::fill_n(next, count, value), std::exchange(next, next + count); };
+      const auto takeRow = [&](float value) { return Row<float>{take(all, value), take(all, value), take(all, value)}; };
+      moved = takeRow(0), rest = takeRow(kBeyond), forces = takeRow(0);
+      twiceEnergy = take(whole, 0), largestSquared = take(whole, 0);
+    }
+    // Of the first column.
+    std::size_t place(Layer layer, int row) const { return beyond_ + (layer == Layer::inner ? layer_ : 0) + std::size_t(row) * stride_; }
+
+   private:
+    static constexpr std::size_t kSkew = 5 * kChunk;   // so that vectors of a node do not compete for one place in a cache
+    std::vector<float> numbers_;
+    std::size_t stride_ = 0, layer_ = 0, beyond_ = 0;
+  };
 
   std::string name_;
   Grid grid_;
   NodeVectors rest_;
   SingleVectors restSingle_;
+  std::vector<StencilSpring> aside_;   // the stencil, those that end in different rows next to each other
+  std::size_t beyond_ = kChunk;        // at least as many columns as springs reach
 };
 
 LatticeHessian::LatticeHessian(const LatticeTerm& term)

@@ -27,7 +27,7 @@ PECTORA_INLINE Curvature curvatureOf(float ux, float uy, float uz, float dx0, fl
 
 }  // namespace
 
-PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums<double> sums) {
+PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums sums) {
   const double *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
   const double *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
   const double *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
@@ -52,39 +52,6 @@ PECTORA_WIDE void springForces(const RowSprings<double>& springs, Row<double> gr
     const double size = std::abs(tension);
     largest[i] = largest[i] < size ? size : largest[i];
     degenerate[i] = isDegenerate ? 1.0 : degenerate[i];
-  }
-}
-
-PECTORA_WIDE void springForces(const RowSprings<float>& springs, Row<float> gradient, Row<float> pull, RowSums<float> sums) {
-  const float *nx = springs.near.x, *ny = springs.near.y, *nz = springs.near.z;
-  const float *fx = springs.far.x, *fy = springs.far.y, *fz = springs.far.z;
-  const float *nx0 = springs.restNear.x, *ny0 = springs.restNear.y, *nz0 = springs.restNear.z;
-  const float *fx0 = springs.restFar.x, *fy0 = springs.restFar.y, *fz0 = springs.restFar.z;
-  float *gx = gradient.x, *gy = gradient.y, *gz = gradient.z, *px = pull.x, *py = pull.y, *pz = pull.z;
-  float *energy = sums.twiceEnergy, *largest = sums.largest, *degenerate = sums.degenerate;
-  const float stretched = springs.stiffness, compressed = springs.stiffness * springs.compression;
-  const std::size_t count = springs.count;
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const float ux = fx[i] - nx[i], uy = fy[i] - ny[i], uz = fz[i] - nz[i];
-    const float dx0 = fx0[i] - nx0[i], dy0 = fy0[i] - ny0[i], dz0 = fz0[i] - nz0[i];
-    const float dx = dx0 + ux, dy = dy0 + uy, dz = dz0 + uz;
-    const float squared = dx * dx + dy * dy + dz * dz, squared0 = dx0 * dx0 + dy0 * dy0 + dz0 * dz0;
-    const bool isDegenerate = squared <= kDegenerateSingle * kDegenerateSingle * squared0;
-    // l^2 - l0^2 without loss of digits; then 1 - l0 / l = growth / (l^2 + l l0), and (l - l0)^2 = growth^2 / (l + l0)^2.
-    const float growth = ux * (dx + dx0) + uy * (dy + dy0) + uz * (dz + dz0);
-    const float k = isDegenerate ? 0.0f : growth < 0 ? compressed : stretched;
-    const float product = std::sqrt(squared * squared0);
-    const float below = isDegenerate ? 1.0f : squared + product, sum = isDegenerate ? 1.0f : squared + squared0 + 2 * product;
-    const float share = k * growth / (below * sum);
-    const float scale = share * sum, twice = share * growth * below;
-    const float x = scale * dx, y = scale * dy, z = scale * dz;
-    px[i] = x, py[i] = y, pz[i] = z;
-    gx[i] -= x, gy[i] -= y, gz[i] -= z;
-    energy[i] += twice;
-    const float size = k * twice;
-    largest[i] = largest[i] < size ? size : largest[i];
-    degenerate[i] = isDegenerate ? 1.0f : degenerate[i];
   }
 }
 

@@ -9,7 +9,7 @@ namespace pectora::lattice {
 /// A spring shorter than this part of its rest length has no direction of its own.
 inline constexpr double kDegenerate = 1e-12;
 
-/// The springs of one row: near end i, far end i, for i below count, where they are now, in single precision how far they have
+/// The springs of one row: near end i, far end i, for i below count, where they are now, or of a second derivative how far they have
 /// moved from rest; and at rest. Rest lengths are the distances at rest; to compute them costs less than to read them.
 template <class T>
 struct RowSprings {
@@ -18,18 +18,14 @@ struct RowSprings {
   T stiffness, compression;
 };
 
-/// What a row adds up, column by column: twice the energy, the largest force (in single precision its square), and 1 where a spring has
-/// no direction.
-template <class T>
+/// What a row adds up, column by column: twice the energy, the largest force, and 1 where a spring has no direction.
 struct RowSums {
-  T *twiceEnergy, *largest, *degenerate;
+  double *twiceEnergy, *largest, *degenerate;
 };
 
 /// Subtracts the forces on the near ends from `gradient`; those on the far ends are opposite, and written to `pull`. A degenerate
 /// spring gets none.
-void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums<double> sums);
-/// The same in single precision: forces are right to about 1e-6 of themselves, however small, as lengths grow by what their ends have moved.
-void springForces(const RowSprings<float>& springs, Row<float> gradient, Row<float> pull, RowSums<float> sums);
+void springForces(const RowSprings<double>& springs, Row<double> gradient, Row<double> pull, RowSums sums);
 /// The energy alone.
 void springEnergies(const RowSprings<double>& springs, double* twiceEnergy);
 /// target += source.

@@ -1,6 +1,7 @@
 #include "kernel/physics/system.h"
 
 #include "kernel/physics/hessian.h"
+#include "kernel/physics/workers.h"
 
 #include <algorithm>
 
@@ -53,8 +54,11 @@ std::string System::nodeName(std::size_t node) const {
 void Drive::apply(double t, std::size_t freeNodes, NodeVectors& positions) const {
   const double position = std::clamp(t, 0.0, 1.0) * double(frames.size() - 1);
   const std::size_t frame = std::min(frames.size() - 2, std::size_t(position));
-  for (std::size_t i = 0; i < frames[frame].size(); ++i)
-    positions.set(freeNodes + i, lerp(frames[frame][i], frames[frame + 1][i], position - double(frame)));
+  const std::vector<Vec3>&from = frames[frame], &to = frames[frame + 1];
+  constexpr std::size_t kPiece = 4096;
+  forEachPiece(from.size(), kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions.set(freeNodes + i, lerp(from[i], to[i], position - double(frame)));
+  });
 }
 
 }  // namespace pectora

@@ -31,7 +31,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     return;
   }
   if (!arena) setThreads(threadCount);
-  arena->execute([&] { tbb::parallel_for(std::size_t(0), count, body, tbb::simple_partitioner()); });
+  arena->execute([&] { tbb::parallel_for(std::size_t(0), count, body, tbb::auto_partitioner()); });
 }
 
 }  // namespace pectora

@@ -1,5 +1,7 @@
 #include "plugins/solver/common/movement.h"
 
+#include "kernel/physics/workers.h"
+
 #include <algorithm>
 
 namespace pectora {
@@ -11,16 +13,21 @@ void Movement::apply(double t, NodeVectors& positions) const {
 }
 
 double Movement::longestWay() const {
-  double longest = 0;
+  constexpr std::size_t kPiece = 4096;
   const auto& frames = drive_.frames;
-  for (std::size_t i = 0; i < frames.front().size(); ++i) {
-    double way = 0;
-    if (start_) way = distance((*start_)[system_.freeNodes + i], frames.back()[i]);
-    else
-      for (std::size_t f = 1; f < frames.size(); ++f) way += distance(frames[f - 1][i], frames[f][i]);
-    longest = std::max(longest, way);
-  }
-  return longest;
+  std::vector<double> longest(piecesOf(frames.front().size(), kPiece) + 1);
+  forEachPiece(frames.front().size(), kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      double way = 0;
+      if (start_) way = distance((*start_)[system_.freeNodes + i], frames.back()[i]);
+      else
+        for (std::size_t f = 1; f < frames.size(); ++f) way += distance(frames[f - 1][i], frames[f][i]);
+      most = std::max(most, way);
+    }
+    longest[piece] = most;
+  });
+  return *std::max_element(longest.begin(), longest.end());
 }
 
 }  // namespace pectora

@@ -9,16 +9,7 @@
 namespace pectora {
 namespace {
 
-constexpr std::size_t kPiece = 2048;   // nodes; a few vectors of them fit the nearest caches
-
-std::size_t piecesOf(std::size_t count) { return (count + kPiece - 1) / kPiece; }
-
-template <class F>
-void forEachPiece(std::size_t count, F&& f) {
-  parallelFor(piecesOf(count), [&](std::size_t piece) {
-    f(piece, piece * kPiece, std::min(count, (piece + 1) * kPiece));
-  });
-}
+constexpr std::size_t kPiece = 4096;   // nodes; a few vectors of them fit the nearest caches
 
 // Sums side by side, so that additions do not wait for each other; always as many, so that their bits are the same for every instruction set.
 template <class A, class B>
@@ -56,8 +47,8 @@ PECTORA_WIDE void scale(float s, const float* v, float* to, std::size_t count) {
 
 template <class A, class B>
 double dot(const A& a, const B& b, std::size_t count) {
-  std::vector<double> sums(piecesOf(count));
-  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+  std::vector<double> sums(piecesOf(count, kPiece));
+  forEachPiece(count, kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
     sums[piece] = dot(&a.x[begin], &b.x[begin], n) + dot(&a.y[begin], &b.y[begin], n) + dot(&a.z[begin], &b.z[begin], n);
   });
@@ -70,8 +61,8 @@ template double dot(const NodeVectors&, const SingleVectors&, std::size_t);
 template double dot(const SingleVectors&, const SingleVectors&, std::size_t);
 
 std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count) {
-  std::vector<double> sums(piecesOf(count) * vs.size()), totals(vs.size());
-  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+  std::vector<double> sums(piecesOf(count, kPiece) * vs.size()), totals(vs.size());
+  forEachPiece(count, kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
     double* sum = sums.data() + piece * vs.size();
     for (const SingleVectors* v : vs) *sum++ = dot(&b.x[begin], &v->x[begin], n) + dot(&b.y[begin], &v->y[begin], n) + dot(&b.z[begin], &v->z[begin], n);
@@ -83,7 +74,7 @@ std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const Node
 template <class X, class V, class To>
 void setSum(const X& x, double s, const V& v, To& to, std::size_t count) {
   using Number = typename decltype(to.x)::value_type;
-  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+  forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
     add(&x.x[begin], Number(s), &v.x[begin], &to.x[begin], end - begin);
     add(&x.y[begin], Number(s), &v.y[begin], &to.y[begin], end - begin);
     add(&x.z[begin], Number(s), &v.z[begin], &to.z[begin], end - begin);
@@ -94,7 +85,7 @@ template void setSum(const NodeVectors&, double, const SingleVectors&, NodeVecto
 template void setSum(const SingleVectors&, double, const SingleVectors&, SingleVectors&, std::size_t);
 
 void setSum(const std::vector<Scaled>& terms, SingleVectors& to, std::size_t count) {
-  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+  forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (auto axis : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
       float* sum = &(to.*axis)[begin];
       scale(float(terms[0].factor), &(terms[0].v->*axis)[begin], sum, end - begin);
@@ -104,7 +95,7 @@ void setSum(const std::vector<Scaled>& terms, SingleVectors& to, std::size_t cou
 }
 
 void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
-  forEachPiece(count, [&](std::size_t, std::size_t begin, std::size_t end) {
+  forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to.x[i] = float(from.x[i]);
     for (std::size_t i = begin; i < end; ++i) to.y[i] = float(from.y[i]);
     for (std::size_t i = begin; i < end; ++i) to.z[i] = float(from.z[i]);
@@ -114,8 +105,8 @@ void copy(const NodeVectors& from, SingleVectors& to, std::size_t count) {
 template <class Vectors>
 double longest(const Vectors& v, std::size_t count) {
   using Number = typename decltype(v.x)::value_type;
-  std::vector<Number> squared(piecesOf(count));
-  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+  std::vector<Number> squared(piecesOf(count, kPiece));
+  forEachPiece(count, kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     Number largest = 0;
     for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]);
     squared[piece] = largest;
@@ -132,8 +123,8 @@ double negligibleForce(const System& system) {
 
 Residual largestResidual(const System& system, const NodeVectors& gradient) {
   const std::size_t count = system.freeNodes;
-  std::vector<Residual> found(piecesOf(count));
-  forEachPiece(count, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+  std::vector<Residual> found(piecesOf(count, kPiece));
+  forEachPiece(count, kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     double squared = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const double here = dot(gradient[i], gradient[i]);

@@ -26,8 +26,6 @@ double searchLine(const Objective& objective, NodeVectors& x, Evaluation& e, con
   const std::size_t count = objective.system().freeNodes;
   const double slope = dot(e.gradient, d, count);
   if (!(slope < 0)) return 0;
-  // The driven nodes stay where they are while one minimiser works.
-  if (place.size() != x.size()) place = x;
   const double rounding = (objective.precision() == Precision::full ? 1e-13 : 1e-6) * std::abs(e.value);
   double step = firstStep;
   for (int halving = 0; halving < 40; ++halving) {

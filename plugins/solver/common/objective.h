@@ -71,7 +71,7 @@ class Minimiser {
   virtual Outcome minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) = 0;
 };
 
-/// Room for what is tried.
+/// Room for what is tried; `place` holds the driven nodes where they are.
 struct Trial {
   Evaluation evaluation;
   NodeVectors place;

@@ -16,6 +16,8 @@ constexpr double kLooseTolerance = 1e-2;
 constexpr double kLeastPartOfStep = 1.0 / 4;
 // Single precision errs by less than a thousandth of this, mm, so that it is enough where such an accuracy is asked for.
 constexpr double kRoughAccuracy = 0.01;
+// A residual of this part of the largest force is right to a hundredth in single precision; a smaller one is taken in double.
+constexpr double kRoughResidual = 1e-3;
 // A step may end this far from its prediction, as a part of the bar's movement.
 constexpr double kOffCourse = 0.5;
 
@@ -29,7 +31,7 @@ class QuasiStatic final : public Session {
  public:
   QuasiStatic(const System& system, const QuasiStaticSettings& settings, std::unique_ptr<Minimiser> minimiser, int stepIterations,
               Acceleration acceleration)
-      : system_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations), acceleration_(acceleration), isPredicted_(Newton::isFor(system)) {}
+      : system_(system), objective_(system), settings_(settings), minimiser_(std::move(minimiser)), stepIterations_(stepIterations), acceleration_(acceleration), isPredicted_(Newton::isFor(system)) {}
 
   void takeOver(Session& before) override {
     auto* other = dynamic_cast<QuasiStatic*>(&before);
@@ -37,32 +39,31 @@ class QuasiStatic final : public Session {
   }
 
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
-    Objective objective(system_);
-    if (acceleration_.accuracy >= kRoughAccuracy) objective.setPrecision(Precision::rough);
+    const int before = objective_.evaluations();
+    objective_.setPrecision(acceleration_.accuracy >= kRoughAccuracy ? Precision::rough : Precision::full);
     Solution solution;
-    Evaluation end;
-    follow(objective, Movement(system_, drive, start), solution, end, host);
+    follow(Movement(system_, drive, start), solution, host);
     if (start && solution.status != SolveStatus::converged) {
       host.info("the given start did not lead to rest; beginning from rest");
-      follow(objective, Movement(system_, drive, nullptr), solution, end, host);
+      follow(Movement(system_, drive, nullptr), solution, host);
     }
-    if (objective.precision() == Precision::rough) {
-      objective.setPrecision(Precision::full);
-      objective.evaluate(solution.positions, end);
+    if (objective_.precision() == Precision::rough && end_.relativeResidual() < kRoughResidual) {
+      objective_.setPrecision(Precision::full);
+      objective_.evaluate(solution.positions, end_);
     }
-    solution.forceEvaluations = objective.evaluations();
-    solution.residual = end.residual.force;
-    solution.relativeResidual = end.relativeResidual();
-    solution.energy = end.energy;
+    solution.forceEvaluations = objective_.evaluations() - before;
+    solution.residual = end_.residual.force;
+    solution.relativeResidual = end_.relativeResidual();
+    solution.energy = end_.energy;
+    end_.gradient = {};   // between solves it is but room
     return solution;
   }
 
  private:
   // Steps along the movement. What the solution has counted before is kept.
-  void follow(Objective& objective, const Movement& movement, Solution& solution, Evaluation& end, Host& host) {
-    solution.positions = movement.beginning();
+  void follow(const Movement& movement, Solution& solution, Host& host) {
     solution.message.clear();
-    NodeVectors& x = solution.positions;
+    NodeVectors& x = solution.positions;   // where the last step ended
     const int most = solution.iterations + settings_.maxIterations;
     const double way = movement.longestWay();
     const double wholeStep = 1 / std::max(1.0, std::ceil(way / (isPredicted_ ? settings_.loadStep : 0.1 * settings_.loadStep)));
@@ -72,27 +73,28 @@ class QuasiStatic final : public Session {
     for (;;) {
       const double next = t + 1.001 * step >= 1 ? 1 : t + step;
       const bool isLast = next == 1, isLeast = step < 2 * leastStep;
-      NodeVectors trial = x;
+      const NodeVectors& from = t == 0 ? movement.beginning() : x;
+      NodeVectors trial = from;
       movement.apply(next, trial);
       if (isPredicted_ && (!movement.isFromStart() || acceleration_.predictsFromStart)) {
         if (!predictor_) predictor_ = std::make_unique<Newton>(system_, acceleration_.metric);
-        predictor_->predict(objective, x, trial, acceleration_.forcing, [&] { host.checkCancel(); });
+        predictor_->predict(objective_, from, trial, acceleration_.forcing, [&] { host.checkCancel(); });
       }
       // From a given start there is no path to keep to, so that the last step may end where it will.
       const NodeVectors predicted = movement.isFromStart() ? NodeVectors() : trial;
       const bool isFree = isLast && movement.isFromStart();
       const int left = most - solution.iterations;
       const double tolerance = isFree ? settings_.tolerance : std::max(settings_.tolerance, kLooseTolerance);
-      Outcome outcome = minimise(objective, trial, end, tolerance, isFree ? left : std::min(left, stepIterations_), next, solution, host);
+      Outcome outcome = minimise(trial, tolerance, isFree ? left : std::min(left, stepIterations_), next, solution, host);
       const bool isExhausted = solution.iterations >= most;
-      const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end.isWithin(kLooseTolerance));
+      const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end_.isWithin(kLooseTolerance));
       const bool isOnCourse = isLeast || !isPredicted_ || movement.isFromStart() ||
                               largestDistance(trial, predicted, system_.freeNodes) <= kOffCourse * (next - t) * way;
       if ((isNear && isOnCourse) || isLeast || isExhausted) {
         x = std::move(trial);
         t = next;
-        if (isLast && isNear && settings_.tolerance < tolerance && !isAccurate(outcome, end, tolerance))
-          outcome = minimise(objective, x, end, settings_.tolerance, most - solution.iterations, 1, solution, host);
+        if (isLast && isNear && settings_.tolerance < tolerance && !isAccurate(outcome, tolerance))
+          outcome = minimise(x, settings_.tolerance, most - solution.iterations, 1, solution, host);
         solution.status = isLast ? statusOf(outcome) : SolveStatus::stalled;
         if (isLast || isExhausted || !isNear) break;
         step = std::min(wholeStep, 2 * step);
@@ -105,15 +107,14 @@ class QuasiStatic final : public Session {
     if (solution.status == SolveStatus::converged) return;
     if (t < 1)
       solution.message = fmt::format("only {:.0f} % of the movement could be carried out; the largest force stays at the {}", 100 * t,
-                                     system_.nodeName(end.residual.node));
+                                     system_.nodeName(end_.residual.node));
     else if (solution.iterations >= most)
       solution.message = fmt::format("{} iterations were not enough", settings_.maxIterations);
     else
-      solution.message = "the energy falls no further; the largest force stays at the " + system_.nodeName(end.residual.node);
+      solution.message = "the energy falls no further; the largest force stays at the " + system_.nodeName(end_.residual.node);
   }
 
-  Outcome minimise(Objective& objective, NodeVectors& x, Evaluation& end, double tolerance, int iterations, double part,
-                   Solution& solution, Host& host) {
+  Outcome minimise(NodeVectors& x, double tolerance, int iterations, double part, Solution& solution, Host& host) {
     Watch watch;
     double before = INFINITY;   // the objective before the last step
     watch.poll = [&] { host.checkCancel(); };
@@ -128,19 +129,19 @@ class QuasiStatic final : public Session {
     };
     Minimiser::Limits limits{tolerance, iterations, acceleration_.accuracy};
     const int first = solution.iterations;
-    const Outcome outcome = minimiser_->minimise(objective, x, end, limits, solution.iterations, watch);
+    const Outcome outcome = minimiser_->minimise(objective_, x, end_, limits, solution.iterations, watch);
     const int left = iterations - (solution.iterations - first);
-    if (outcome != Outcome::stalled || objective.precision() == Precision::full || left <= 0) return outcome;
+    if (outcome != Outcome::stalled || objective_.precision() == Precision::full || left <= 0) return outcome;
     // Rounding may have hidden the way down.
-    objective.setPrecision(Precision::full);
+    objective_.setPrecision(Precision::full);
     before = INFINITY;
     limits.iterations = left;
-    return minimiser_->minimise(objective, x, end, limits, solution.iterations, watch);
+    return minimiser_->minimise(objective_, x, end_, limits, solution.iterations, watch);
   }
 
   // Converged by nearness rather than by the residual: then that is what was asked for.
-  static bool isAccurate(Outcome outcome, const Evaluation& end, double tolerance) {
-    return outcome == Outcome::converged && !end.isWithin(tolerance);
+  bool isAccurate(Outcome outcome, double tolerance) const {
+    return outcome == Outcome::converged && !end_.isWithin(tolerance);
   }
   // Decades of the residual from 1 to the tolerance.
   static double progress(double relative, double tolerance) {
@@ -152,6 +153,8 @@ class QuasiStatic final : public Session {
   }
 
   const System& system_;
+  Objective objective_;
+  Evaluation end_;   // of the objective where the last minimisation ended
   QuasiStaticSettings settings_;
   std::unique_ptr<Minimiser> minimiser_;
   int stepIterations_;

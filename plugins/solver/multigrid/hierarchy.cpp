@@ -22,8 +22,7 @@ constexpr std::size_t kAdditiveLevels = 2;
 // y = a x + b y, over fixed pieces.
 void combine(float a, const SingleVectors& x, float b, SingleVectors& y) {
   constexpr std::size_t kPiece = 16384;
-  parallelFor((x.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
-    const std::size_t begin = piece * kPiece, end = std::min(x.size(), begin + kPiece);
+  forEachPiece(x.size(), kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (auto v : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
       const float* in = (x.*v).data();
       float* out = (y.*v).data();
