@@ -38,11 +38,6 @@ void Hessian::multiplySingle(const SingleVectors& v, SingleVectors& y) const {
   for (std::size_t i = 0; i < v.size(); ++i) y.set(i, y[i] + out[i]);
 }
 
-Symmetric3& Symmetric3::operator+=(const Symmetric3& b) {
-  xx += b.xx, xy += b.xy, xz += b.xz, yy += b.yy, yz += b.yz, zz += b.zz;
-  return *this;
-}
-
 Symmetric3 inverse(Symmetric3 a) {
   const double trace = a.xx + a.yy + a.zz, least = 1e-9 * trace;
   if (!(trace > 0)) return {1, 0, 0, 1, 0, 1};

@@ -9,7 +9,10 @@ namespace pectora {
 struct Symmetric3 {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
-  Symmetric3& operator+=(const Symmetric3& b);
+  Symmetric3& operator+=(const Symmetric3& b) {
+    xx += b.xx, xy += b.xy, xz += b.xz, yy += b.yy, yz += b.yz, zz += b.zz;
+    return *this;
+  }
   Symmetric3 operator-() const { return {-xx, -xy, -xz, -yy, -yz, -zz}; }
   /// Adds s times the identity.
   void addIdentity(double s) { xx += s, yy += s, zz += s; }

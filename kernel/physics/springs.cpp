@@ -21,11 +21,12 @@ struct SingleVec3 {
   operator Vec3() const { return {double(x), double(y), double(z)}; }
 };
 
-// Some springs side by side.
+// Some springs side by side, and what all that came there add up.
 struct Batch {
   static constexpr std::size_t kSize = 64;
   double x[kSize], y[kSize], z[kSize];   // from end to end; then the force on the near end
-  double stiffness[kSize], restLength[kSize], length[kSize], tension[kSize], energy[kSize];
+  double stiffness[kSize], restLength[kSize], tension[kSize], degenerate[kSize];
+  double twiceEnergy[kSize] = {}, largest[kSize] = {};
 
   void set(std::size_t i, Vec3 d, double k, double l0) { x[i] = d.x, y[i] = d.y, z[i] = d.z, stiffness[i] = k, restLength[i] = l0; }
   void pull(std::size_t count);
@@ -35,9 +36,12 @@ PECTORA_WIDE void Batch::pull(std::size_t count) {
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
     const double l = std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]), longer = l - restLength[i], t = stiffness[i] * longer;
-    const double scale = t / l;
+    const bool hasDirection = l > kDegenerate * restLength[i] && l > 0;
+    const double scale = t / l, size = std::abs(t);
     x[i] *= scale, y[i] *= scale, z[i] *= scale;
-    length[i] = l, tension[i] = t, energy[i] = 0.5 * t * longer;
+    tension[i] = t, degenerate[i] = hasDirection ? 0.0 : 1.0;
+    twiceEnergy[i] += t * longer;
+    largest[i] = largest[i] < size ? size : largest[i];
   }
 }
 
@@ -57,7 +61,7 @@ SpringCurvature curvatureOf(Vec3 near, Vec3 far, double restLength, const Single
   const Vec3 d = far - near;
   const double length = norm(d);
   if (!(length > kDegenerate * restLength && length > 0))
-    return restLength > 0 ? SpringCurvature{SingleVec3(Vec3(restDirection) * std::sqrt(stiffness)), 0} : SpringCurvature{{}, float(stiffness)};
+    return restLength > 0 ? SpringCurvature{SingleVec3(Vec3(restDirection) * std::sqrt(stiffness)), 0} : SpringCurvature{SingleVec3(), float(stiffness)};
   const double across = stiffness * (1 - restLength / length);
   const double a = projected ? std::max(0.0, across) : across;
   return {SingleVec3(d * (std::sqrt(stiffness - a) / length)), float(a)};
@@ -108,7 +112,6 @@ class SpringTerm final : public Term {
   double evaluate(const NodeVectors& positions, NodeVectors& gradient, double& largestForce) const override {
     std::vector<double> energies(pieces()), largest(pieces());
     forEachPiece([&](std::size_t piece, std::size_t begin, std::size_t end) {
-      double energy = 0, greatest = 0;
       Batch batch;
       for (std::size_t first = begin; first < end; first += Batch::kSize) {
         const std::size_t count = std::min(Batch::kSize, end - first);
@@ -117,18 +120,22 @@ class SpringTerm final : public Term {
           batch.set(i, positions[s.b] - positions[s.a], s.stiffnessNPerMm, s.restLength);
         }
         batch.pull(count);
+        // Springs of one node follow each other.
+        Vec3 sum;
         for (std::size_t i = 0; i < count; ++i) {
           const KeptSpring& s = springs_[first + i];
-          const bool isDegenerate = !(batch.length[i] > kDegenerate * s.restLength && batch.length[i] > 0);
-          const Vec3 force = isDegenerate ? Vec3(restDirections_[first + i]) * batch.tension[i] : Vec3{batch.x[i], batch.y[i], batch.z[i]};
-          energy += batch.energy[i];
-          greatest = std::max(greatest, std::abs(batch.tension[i]));
-          gradient.add(s.a, -force);
+          const Vec3 force = batch.degenerate[i] != 0 ? Vec3(restDirections_[first + i]) * batch.tension[i] : Vec3{batch.x[i], batch.y[i], batch.z[i]};
+          sum += force;
           if (first + i >= held_) gradient.add(s.b, force);
+          if (i + 1 < count && springs_[first + i + 1].a == s.a) continue;
+          gradient.add(s.a, -sum);
+          sum = {};
         }
       }
-      energies[piece] = energy;
-      largest[piece] = greatest;
+      for (std::size_t i = 0; i < Batch::kSize; ++i) {
+        energies[piece] += 0.5 * batch.twiceEnergy[i];
+        largest[piece] = std::max(largest[piece], batch.largest[i]);
+      }
     });
     double total = 0;
     for (std::size_t piece = 0; piece < pieces(); ++piece) {
@@ -195,10 +202,13 @@ class SpringHessian final : public Hessian {
     term_.forEachPiece([&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) curvatures_[i] = term_.curvature(i, positions, projected);
     });
-    for (std::size_t n = 0; n < heldNodes_.size(); ++n) {
-      heldBlocks_[n] = {};
-      for (std::size_t i = firstSpring_[n]; i < firstSpring_[n + 1]; ++i) heldBlocks_[n] += block(i);
-    }
+    constexpr std::size_t kPiece = 4096;
+    pectora::forEachPiece(heldNodes_.size(), kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        heldBlocks_[n] = {};
+        for (std::size_t i = firstSpring_[n]; i < firstSpring_[n + 1]; ++i) heldBlocks_[n] += block(i);
+      }
+    });
   }
 
   void multiply(const NodeVectors& v, NodeVectors& y) const override {

@@ -36,10 +36,10 @@ void Lbfgs::applyMetric(const NodeVectors& gradient, std::size_t free) {
   metric_->apply(single_, metricGradient_);
 }
 
-void Lbfgs::project(const NodeVectors& gradient, std::size_t free) {
+void Lbfgs::project(std::size_t free) {
   std::vector<const SingleVectors*> vectors;
   for (const Pair& pair : pairs_) vectors.insert(vectors.end(), {&pair.s, &pair.my});
-  const std::vector<double> products = dots(vectors, gradient, free);
+  const std::vector<double> products = dots(vectors, single_, free);
   for (std::size_t k = 0; k < pairs_.size(); ++k) sg_[Eigen::Index(k)] = products[2 * k], yMg_[Eigen::Index(k)] = products[2 * k + 1];
 }
 
@@ -79,11 +79,10 @@ void Lbfgs::remember(double step, const NodeVectors& gradientBefore, const NodeV
 
   // y is known by its products alone: those with the gradient after the step less those with the one before.
   const Eigen::Index last = Eigen::Index(pairs_.size());
-  const std::vector<double> before = dots({&pair.s, &pair.my}, gradientBefore, free);
-  sg_[last] = before[0], yMg_[last] = before[1];
+  sg_[last] = dot(gradientBefore, pair.s, free), yMg_[last] = dot(gradientBefore, pair.my, free);
   const Eigen::VectorXd sgBefore = sg_.head(last + 1), yMgBefore = yMg_.head(last + 1);
   pairs_.push_back(std::move(pair));
-  project(gradient, free);
+  project(free);
   sy_.col(last).head(last + 1) = sg_.head(last + 1) - sgBefore;
   yMy_.col(last).head(last + 1) = yMg_.head(last + 1) - yMgBefore;
   yMy_.row(last).head(last) = yMy_.col(last).head(last);
@@ -105,7 +104,7 @@ Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& 
   if (const std::size_t nodes = std::max(free, system.anchorNode(0)); single_.size() != nodes) single_ = direction_ = metricGradient_ = SingleVectors(nodes);
   if (metric_->refresh(x)) forget();
   applyMetric(e.gradient, free);
-  project(e.gradient, free);
+  project(free);
   for (int n = 0; n < limits.iterations; ++n) {
     watch.iteration(e);
     if (e.isWithin(limits.tolerance)) return Outcome::converged;

@@ -26,7 +26,7 @@ class Lbfgs final : public Minimiser {
   void forget();
   void dropOldest();
   void applyMetric(const NodeVectors& gradient, std::size_t free);
-  void project(const NodeVectors& gradient, std::size_t free);
+  void project(std::size_t free);
   void findDirection(std::size_t free);
   void remember(double step, const NodeVectors& gradientBefore, const NodeVectors& gradient, std::size_t free);
 
@@ -37,7 +37,7 @@ class Lbfgs final : public Minimiser {
   Eigen::MatrixXd sy_, yMy_;
   Eigen::VectorXd sg_, yMg_;
   double scale_ = 1;   // of the metric
-  SingleVectors single_, direction_;   // the gradient in single precision, and where to go
+  SingleVectors single_, direction_;   // the gradient that the metric was last applied to, and where to go
   SingleVectors metricGradient_;       // M gradient; the metric is applied once an iteration
 };
 

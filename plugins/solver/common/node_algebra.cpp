@@ -28,6 +28,24 @@ PECTORA_WIDE double dot(const double* a, const double* b, std::size_t count) { r
 PECTORA_WIDE double dot(const double* a, const float* b, std::size_t count) { return dotOf(a, b, count); }
 PECTORA_WIDE double dot(const float* a, const float* b, std::size_t count) { return dotOf(a, b, count); }
 
+// In single precision over short pieces, and those in double.
+PECTORA_WIDE double roughDot(const float* a, const float* b, std::size_t count) {
+  constexpr std::size_t kLanes = 64, kShort = 8 * kLanes;
+  double total = 0;
+  for (std::size_t begin = 0; begin < count; begin += kShort) {
+    float sums[kLanes] = {};
+    const std::size_t end = begin + kShort < count ? begin + kShort : count;
+    std::size_t i = begin;
+    for (; i + kLanes <= end; i += kLanes)
+      for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+    for (; i < end; ++i) sums[0] += a[i] * b[i];
+    for (std::size_t half = kLanes / 2; half > 0; half /= 2)
+      for (std::size_t lane = 0; lane < half; ++lane) sums[lane] += sums[lane + half];
+    total += double(sums[0]);
+  }
+  return total;
+}
+
 // to = x + s v.
 template <class X, class V, class To>
 PECTORA_INLINE void addOf(const X* x, To s, const V* v, To* to, std::size_t count) {
@@ -60,12 +78,12 @@ template double dot(const NodeVectors&, const NodeVectors&, std::size_t);
 template double dot(const NodeVectors&, const SingleVectors&, std::size_t);
 template double dot(const SingleVectors&, const SingleVectors&, std::size_t);
 
-std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count) {
+std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const SingleVectors& b, std::size_t count) {
   std::vector<double> sums(piecesOf(count, kPiece) * vs.size()), totals(vs.size());
   forEachPiece(count, kPiece, [&](std::size_t piece, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
     double* sum = sums.data() + piece * vs.size();
-    for (const SingleVectors* v : vs) *sum++ = dot(&b.x[begin], &v->x[begin], n) + dot(&b.y[begin], &v->y[begin], n) + dot(&b.z[begin], &v->z[begin], n);
+    for (const SingleVectors* v : vs) *sum++ = roughDot(&b.x[begin], &v->x[begin], n) + roughDot(&b.y[begin], &v->y[begin], n) + roughDot(&b.z[begin], &v->z[begin], n);
   });
   for (std::size_t i = 0; i < sums.size(); ++i) totals[i % vs.size()] += sums[i];
   return totals;

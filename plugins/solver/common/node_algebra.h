@@ -10,8 +10,8 @@ namespace pectora {
 /// single A.
 template <class A, class B>
 double dot(const A& a, const B& b, std::size_t count);
-/// The same of every v and one b, which is read once.
-std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const NodeVectors& b, std::size_t count);
+/// The same of every v and one b, which is read once; right to about 1e-7 of the products' sizes.
+std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const SingleVectors& b, std::size_t count);
 
 /// to_i = x_i + s v_i over nodes [0, count). All are NodeVectors, or all SingleVectors, or v alone is. `to` may be x or v.
 template <class X, class V, class To>

@@ -10,14 +10,24 @@
 namespace pectora {
 
 GridMatrix::GridMatrix(GridShape shape)
-    : shape_(shape), diagonal_(std::size_t(shape.layers), std::vector<float>(6 * std::size_t(shape.rows) * shape.columns)), inverse_(diagonal_) {}
+    : shape_(shape), diagonal_(std::size_t(shape.layers), std::vector<float>(6 * std::size_t(shape.rows) * shape.columns)), inverse_(diagonal_),
+      near_(std::size_t(shape.layers) * shape.layers * (kNear + 1) * (2 * kNear + 1)) {}
 
 GridMatrix::Offset& GridMatrix::offset(int layer, int otherLayer, int rows, int columns) {
+  // Those to near neighbours are found without waiting for others.
+  std::atomic<Offset*>* known = nullptr;
+  if (rows <= kNear && std::abs(columns) <= kNear)
+    known = &near_[((std::size_t(layer) * shape_.layers + otherLayer) * (kNear + 1) + rows) * (2 * kNear + 1) + (columns + kNear)];
+  if (known)
+    if (Offset* found = known->load(std::memory_order_acquire)) return *found;
   const std::lock_guard lock(adding_);
-  for (const auto& o : offsets_)
-    if (o->rows == rows && o->columns == columns && o->layer == layer && o->otherLayer == otherLayer) return *o;
-  offsets_.push_back(std::make_unique<Offset>(Offset{layer, otherLayer, rows, columns, std::vector<float>(9 * std::size_t(shape_.rows) * shape_.columns)}));
-  return *offsets_.back();
+  auto found = std::find_if(offsets_.begin(), offsets_.end(), [&](const auto& o) {
+    return o->rows == rows && o->columns == columns && o->layer == layer && o->otherLayer == otherLayer;
+  });
+  if (found == offsets_.end())
+    found = offsets_.insert(found, std::make_unique<Offset>(Offset{layer, otherLayer, rows, columns, std::vector<float>(9 * std::size_t(shape_.rows) * shape_.columns)}));
+  if (known) known->store(found->get(), std::memory_order_release);
+  return **found;
 }
 
 void GridMatrix::add(GridPoint a, GridPoint b, std::size_t count, const float* const entries[9], float weight) {
@@ -74,6 +84,7 @@ void GridMatrix::finish() {
 
 void GridMatrix::keepInverseDiagonal() {
   offsets_.clear();
+  for (auto& known : near_) known = nullptr;
   diagonal_ = {};
 }
 

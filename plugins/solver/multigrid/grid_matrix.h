@@ -6,6 +6,7 @@
 
 #include "kernel/physics/hessian.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -74,6 +75,8 @@ class GridMatrix {
   std::mutex adding_;                                    // guards the list of offsets
   std::vector<std::unique_ptr<Offset>> offsets_;
   std::vector<std::vector<float>> diagonal_, inverse_;   // one a layer: 6 numbers a point
+  static constexpr int kNear = 4;
+  std::vector<std::atomic<Offset*>> near_;               // offsets of at most so many rows and columns, null until there is one
 };
 
 }  // namespace pectora

@@ -14,7 +14,7 @@ namespace {
 
 // The part of the spectrum that smoothing is to damp, and the steps of power iteration that find its upper end.
 constexpr float kLowest = 0.25f;
-constexpr int kPowerSteps = 8, kPowerStepsAgain = 2;
+constexpr int kPowerSteps = 8, kPowerStepsAgain = 1;
 // The finest levels cost the most and gain the least from seeing each other's work: additive, a cycle needs no product with
 // their matrices, only with their diagonals.
 constexpr std::size_t kAdditiveLevels = 2;
