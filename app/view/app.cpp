@@ -108,17 +108,18 @@ void App::frame() {
 
 void App::takePictures() {
   auto& turn = context_.turntable;
+  if (context_.wantedPicture || turn) settling_ = std::max(settling_, 1);   // to tell what became of it
   try {
     if (context_.wantedPicture) {
       const std::string path = *std::exchange(context_.wantedPicture, std::nullopt);
       savePicture(path);
-      context_.worker().log(LogLine::Kind::print, "The picture is " + path);
+      context_.notice = "The picture is " + path;
     }
     if (!turn) return;
     const int side = int(900 * context_.scale);
     scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, side, side);
     if (turn->drawn < Turntable::kPictures) return;
-    context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
+    context_.notice = "The turntable is in " + turn->folder;
     turn.reset();
   } catch (const std::exception& error) {
     // Such as a folder that cannot be written.

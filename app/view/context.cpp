@@ -35,7 +35,6 @@ void Context::refresh() {
   activity = worker_.activity();
   for (LogLine& line : worker_.takeLog()) {
     if (line.kind == LogLine::Kind::error) message = line.text;
-    if (line.kind == LogLine::Kind::print) notice = line.text;
     // What moves warns of the same at every step: the last one stays.
     const bool isAgain = line.kind == LogLine::Kind::warning && !log.empty() && log.back().kind == line.kind && log.back().text.substr(0, kSameWarning) == line.text.substr(0, kSameWarning);
     if (isAgain) log.back() = std::move(line);

@@ -124,7 +124,9 @@ void accuracyPicture(Context& context, float width, float height) {
     const ImU32 color = colorOf(solvers, p.solver);
     if (p.isPresent) {
       list->AddCircle(at, 2.1f * radius, IM_COL32(255, 255, 255, 255), 0, 2 * context.scale);
-      list->AddText({at.x + 2.6f * radius, at.y - 1.6f * em}, IM_COL32(255, 255, 255, 255), "this run");
+      const char* name = "this run";
+      const float wide = ImGui::CalcTextSize(name).x, beside = at.x + 2.6f * radius;   // on the left where the right is too near
+      list->AddText({beside + wide < corner.x + width ? beside : at.x - 2.6f * radius - wide, at.y - 1.6f * em}, IM_COL32(255, 255, 255, 255), name);
     } else if (p.status == SolveStatus::converged) {
       list->AddCircleFilled(at, radius, color);
     } else {

@@ -21,7 +21,7 @@ void ScriptPanel::controls(Context& context) {
     const std::string path = context.outPath("session.lua");
     std::ofstream file(path);
     file << scriptOf(context.choices) << std::flush;
-    if (file.good()) context.worker().log(LogLine::Kind::print, "The script is " + path);
+    if (file.good()) context.notice = "The script is " + path;
     else context.message = "The script cannot be written to " + path;
   }
   ImGui::BeginDisabled(!context.results->motionValue());
