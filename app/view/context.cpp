@@ -160,9 +160,9 @@ void Context::studyScene() {
 std::string Context::outPath(const std::string& name, bool isNew) const {
   std::error_code ignored;   // what is written there tells
   fs::create_directories(outFolder, ignored);
-  fs::path path = fs::path(outFolder) / name;
-  const fs::path whole = path;
-  for (int i = 2; isNew && fs::exists(path); ++i) path = whole.parent_path() / fs::path(whole.stem().string() + "_" + std::to_string(i) + whole.extension().string());
+  const fs::path whole = fs::path(outFolder) / name;
+  fs::path path = whole;
+  for (int i = 2; isNew && fs::exists(path); ++i) path.replace_filename(whole.stem().string() + "_" + std::to_string(i) + whole.extension().string());
   return path.string();
 }
 

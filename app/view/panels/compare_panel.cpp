@@ -227,9 +227,11 @@ void ComparePanel::controls(Context& context) {
       ImGui::SameLine();
     }
     row(readable(name).c_str(), told, isFar ? &kWarm : nullptr);
-    hint(isFar ? "The two lie so far apart after registration: is it the same point on both, and the patient's right on the right?" : "Distance of the two after registration");
+    hint(isFar ? "The two lie so far apart after registration: is it the same point on both, and the patient's right on the right?"
+               : "Distance of the two after registration");
   }
-  if (isPlacing_ && !registeredBy(*context.results, std::size(kLandmarks)) && button("Turn the scan over", "scan.turn", {-1, 0})) isTurned_ = !isTurned_, sides_[1].of = nullptr;
+  const bool canTurn = isPlacing_ && !registeredBy(*context.results, std::size(kLandmarks));
+  if (canTurn && button("Turn the scan over", "scan.turn", {-1, 0})) isTurned_ = !isTurned_, sides_[1].of = nullptr;
   if (isPlacing_) note("Click " + readable(kLandmarks[next_]) + " on either surface. Undo takes a click back. Or drop a file of landmarks (.csv) on the window.");
   if (!c.ctLandmarks.points.empty() && button("Forget those placed by hand", "landmarks.forget", {-1, 0})) {
     c.ctLandmarks = c.scanLandmarks = {};

@@ -23,7 +23,8 @@ void drawLabel(const std::string& text, const std::vector<ImVec2>& outline, Side
   const float gap = 0.3f * size.y;
   const ImVec2 at{outermost.x + (side == Side::right ? -size.x - gap : gap), outermost.y - size.y / 2};
   ImDrawList* list = ImGui::GetWindowDrawList();
-  for (const ImVec2 aside : {ImVec2{-1, 0}, ImVec2{1, 0}, ImVec2{0, -1}, ImVec2{0, 1}}) list->AddText({at.x + aside.x, at.y + aside.y}, IM_COL32(0, 0, 0, 220), text.c_str());
+  for (const ImVec2 aside : {ImVec2{-1, 0}, ImVec2{1, 0}, ImVec2{0, -1}, ImVec2{0, 1}})
+    list->AddText({at.x + aside.x, at.y + aside.y}, IM_COL32(0, 0, 0, 220), text.c_str());
   list->AddText(at, color, text.c_str());
 }
 

@@ -106,7 +106,8 @@ void hint(const std::string& text) {
   const double now = ImGui::GetTime();
   const int frame = ImGui::GetFrameCount();
   const ImVec2 at = ImGui::GetItemRectMin();
-  if (hovered.text != text || hovered.at.x != at.x || hovered.at.y != at.y || frame - hovered.frame > 1) hovered = {text, at, frame, now};
+  const bool wasHovered = hovered.frame == frame || hovered.frame + 1 == frame;
+  if (!wasHovered || hovered.text != text || hovered.at.x != at.x || hovered.at.y != at.y) hovered = {text, at, frame, now};
   hovered.frame = frame;
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   if (!hovered.isShown && (moved.x != 0 || moved.y != 0)) hovered.since = now;
