@@ -41,6 +41,8 @@ void App::keepLayout() {
 
 bool App::wantsFrame() const { return settling_ > 0 || isCoarse_ || context_.turntable; }
 
+double App::untilFrame() const { return wantsFrame() ? 0 : untilHint(); }
+
 void App::frame() {
   // What happened since the last one.
   const auto before = context_.results;
@@ -106,13 +108,18 @@ void App::frame() {
 
 void App::takePictures() {
   auto& turn = context_.turntable;
+  if (context_.wantedPicture || turn) settling_ = std::max(settling_, 1);   // to tell what became of it
   try {
-    if (context_.wantedPicture) savePicture(*std::exchange(context_.wantedPicture, std::nullopt));
+    if (context_.wantedPicture) {
+      const std::string path = *std::exchange(context_.wantedPicture, std::nullopt);
+      savePicture(path);
+      context_.notice = "The picture is " + path;
+    }
     if (!turn) return;
     const int side = int(900 * context_.scale);
     scene_.turntable(context_, turn->folder, turn->drawn++, Turntable::kPictures, side, side);
     if (turn->drawn < Turntable::kPictures) return;
-    context_.worker().log(LogLine::Kind::print, "The turntable is in " + turn->folder);
+    context_.notice = "The turntable is in " + turn->folder;
     turn.reset();
   } catch (const std::exception& error) {
     // Such as a folder that cannot be written.
@@ -163,6 +170,9 @@ void App::topBar(float width, float) {
   if (button("↷", "redo")) context_.redo();
   ImGui::EndDisabled();
   hint("Redo (Ctrl+Y)");
+  ImGui::SameLine(0, 12 * s);
+  if (button("Screenshot", "screenshot")) context_.takeScreenshot();
+  hint("Writes what the window shows into the folder " + context_.outFolder + ", which is chosen under Script");
   std::string what = context_.choices.source == Source::phantom ? "Phantom" : context_.choices.source == Source::result ? "Result" : isOpen ? "CT" : "";
   if (const Volume* volume = context_.results->volume(); volume && isOpen)
     what += fmt::format(" · {} × {} × {}", volume->grid.size[0], volume->grid.size[1], volume->grid.size[2]);
@@ -185,8 +195,9 @@ void App::leftColumn(float, float) {
 }
 
 void App::center(float width, float height) {
-  // Each step has a look of the scene of its own, and keeps what was set there.
-  if (context_.tab != lastTab_) {
+  // Each step has a look of the scene of its own, and keeps what was set there. One without a scene leaves it as it was last seen.
+  const bool hasScene = context_.tab != Tab::accuracy && context_.tab != Tab::script;
+  if (hasScene && context_.tab != lastTab_) {
     const auto swapLook = [this](TabLook& look) {
       std::swap(look.skin, context_.scene.skin);
       std::swap(look.hasBones, context_.scene.hasBones);
@@ -209,7 +220,7 @@ void App::center(float width, float height) {
     accuracyPicture(context_, width, height);
   } else if (context_.tab == Tab::anatomy && context_.results->volume() && !anatomy_.isSolid()) {
     anatomy_.drawSlices(context_, width, height);
-  } else if (context_.tab == Tab::compare && compare_.isPlacing()) {
+  } else if (context_.tab == Tab::compare && (compare_.isPlacing() || !context_.results->scan.value)) {
     compare_.draw(context_, width, height);
     isCoarse_ = compare_.isCoarse();
   } else {

@@ -28,6 +28,8 @@ class App {
   void frame();
   /// Frames that are still due without any event: the layout settles, or edges become fine.
   bool wantsFrame() const;
+  /// Seconds until the next frame is due without any event; 1e9: none is.
+  double untilFrame() const;
   /// Writes the last frame as a PNG.
   void savePicture(const std::string& path) const;
   /// Remembers the parts of the window for the next time.

@@ -68,6 +68,7 @@ void Context::refresh() {
 
 void Context::changed(bool isDragging) {
   message.clear();
+  notice.clear();
   if (!isDragging) history.keep(choices);
   worker_.want(choices, isDragging);
 }
@@ -101,6 +102,15 @@ void Context::open(const std::string& given) {
     });
     return;
   }
+  if (ending == ".csv") {
+    tab = Tab::compare;
+    worker_.run("landmarks", [inbox = inbox_, made = choices, path](Pipeline& pipeline) mutable {
+      std::tie(made.ctLandmarks, made.scanLandmarks) = pipeline.landmarksIn(path);
+      const std::lock_guard lock(inbox->mutex);
+      inbox->choices = std::move(made);
+    });
+    return;
+  }
   for (const char* surface : {".ply", ".stl", ".obj", ".vtk", ".vtp", ".txt"}) {
     if (ending != surface) continue;
     choices.scan.settings = {{"path", path}};
@@ -110,6 +120,8 @@ void Context::open(const std::string& given) {
     return;
   }
   const bool isResult = fs::exists(path + "/before.ply") && fs::exists(path + "/after.ply");
+  const SettingValue* present = find(choices.loader.settings, "path");
+  if (!present || *present != SettingValue(path)) choices.scan.settings.clear(), choices.scanLandmarks = {};
   choices.source = isResult ? Source::result : Source::dicom;
   choices.loader = {isResult ? "" : "loader.dicom", {{"path", path}}};
   choices.ctLandmarks = {};
@@ -143,6 +155,15 @@ void Context::studyScene() {
     const std::lock_guard lock(inbox->mutex);
     inbox->study = std::move(made);
   });
+}
+
+std::string Context::outPath(const std::string& name, bool isNew) const {
+  std::error_code ignored;   // what is written there tells
+  fs::create_directories(outFolder, ignored);
+  const fs::path whole = fs::path(outFolder) / name;
+  fs::path path = whole;
+  for (int i = 2; isNew && fs::exists(path); ++i) path.replace_filename(whole.stem().string() + "_" + std::to_string(i) + whole.extension().string());
+  return path.string();
 }
 
 void Context::measureEffects() {

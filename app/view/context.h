@@ -80,7 +80,9 @@ class Context {
   std::vector<EffectWorth> worths;     ///< empty: not measured for the present scene
   std::optional<Study> study;          ///< of the present scene and plan
   std::string typedPath, typedScan, presetName = "my preset";   ///< what stands in those fields
-  std::string message;                 ///< for the status line; empty: none
+  std::string outFolder = "pectora_result";   ///< for files that are asked for
+  std::string message;                 ///< what went wrong, for the status line; empty: nothing
+  std::string notice;                  ///< what was last told, such as where a file is
   std::optional<std::string> wantedPicture;   ///< path of a PNG of the next frame
   std::optional<Turntable> turntable;         ///< until it is done
 
@@ -90,12 +92,17 @@ class Context {
   void changed(bool isDragging);
   void undo();
   void redo();
-  /// Opens a folder of DICOM, a DICOMDIR, a surface (as the scan after the operation), a script, a preset, or a folder of results, by its path.
+  /// Opens a folder of DICOM, a DICOMDIR, a surface (as the scan after the operation), landmarks on both (.csv), a script, a preset, or a
+  /// folder of results, by its path. Another patient has another scan.
   void open(const std::string& path);
   void openPhantom();
   void pickPoint(int point);
   void measureEffects();
   void studyScene();
+  /// The path of a file in outFolder, which is made: NAME.png, or NAME_2.png and so on where `isNew` and that is there already.
+  std::string outPath(const std::string& name, bool isNew = false) const;
+  /// Writes the next frame into outFolder.
+  void takeScreenshot() { wantedPicture = outPath("screenshot.png", true); }
   Worker& worker() { return worker_; }
 
  private:

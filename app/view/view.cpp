@@ -17,7 +17,7 @@ void runView(Registry& registry, const ViewOptions& options) {
   App app(*target, registry, [] { wakeWindow(); });
   if (!options.path.empty()) app.context().open(options.path);
   // Frames are drawn when something happens, and not otherwise.
-  while (target->wait(app.wantsFrame() ? 0 : 1e9)) app.frame();
+  while (target->wait(app.untilFrame())) app.frame();
   app.keepLayout();
 }
 

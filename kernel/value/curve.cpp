@@ -34,6 +34,35 @@ int findBasis(std::span<const double> knots, int degree, double u, Weights& n) {
   return span - degree;
 }
 
+// How to integrate over a knot span, -1 to 1: Gauss's rule with five points on eight equal parts, for the speed is smooth there, and how
+// what is a polynomial with `count` coefficients follows at those points from its values at others.
+struct SpanRule {
+  struct Place {
+    double weight = 0;
+    std::array<double, kMostDegree> parts{};   // of each known value (Lagrange)
+  };
+  static constexpr int kParts = 8, kPoints = 5;
+  std::array<double, kMostDegree> known{};     // where the values are known
+  std::array<Place, kParts * kPoints> places;
+
+  SpanRule() = default;
+  explicit SpanRule(int count) {
+    static constexpr std::array<double, kPoints> nodes{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
+    static constexpr std::array<double, kPoints> weights{0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189};
+    for (int j = 0; j < count; ++j) known[j] = (2 * j + 1.0) / count - 1;
+    for (int q = 0; q < kParts * kPoints; ++q) {
+      Place& place = places[q];
+      const double at = (2 * (q / kPoints) + 1 + nodes[q % kPoints]) / kParts - 1;
+      place.weight = weights[q % kPoints] / kParts;
+      for (int j = 0; j < count; ++j) {
+        place.parts[j] = 1;
+        for (int i = 0; i < count; ++i)
+          if (i != j) place.parts[j] *= (at - known[i]) / (known[j] - known[i]);
+      }
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<double> clampedKnots(int controls, int degree) {
@@ -73,19 +102,24 @@ Vec3 Curve::derivative(double u) const {
 }
 
 double Curve::length() const {
-  // Five-point Gauss rule on eight equal parts of each knot span: the speed is smooth there.
-  static constexpr std::array<double, 5> nodes{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
-                                               0.906179845938664};
-  static constexpr std::array<double, 5> weights{0.236926885056189, 0.478628670499366, 0.568888888888889,
-                                                 0.478628670499366, 0.236926885056189};
-  constexpr int parts = 8;
+  // Within a knot span the derivative is a polynomial: `degree` of its values tell all others.
+  static const std::array<SpanRule, kMostDegree + 1> rules = [] {
+    std::array<SpanRule, kMostDegree + 1> made;
+    for (int d = 1; d <= kMostDegree; ++d) made[d] = SpanRule(d);
+    return made;
+  }();
+  const SpanRule& rule = rules[degree];
   double total = 0;
   for (std::size_t k = degree; k + degree + 1 < knots.size(); ++k) {
-    const double half = 0.5 * (knots[k + 1] - knots[k]) / parts;
+    const double half = 0.5 * (knots[k + 1] - knots[k]);
     if (half <= 0) continue;
-    for (int part = 0; part < parts; ++part)
-      for (int q = 0; q < 5; ++q)
-        total += half * weights[q] * norm(derivative(knots[k] + half * (2 * part + 1 + nodes[q])));
+    std::array<Vec3, kMostDegree> known;
+    for (int j = 0; j < degree; ++j) known[j] = derivative(knots[k] + half * (1 + rule.known[j]));
+    for (const SpanRule::Place& place : rule.places) {
+      Vec3 d;
+      for (int j = 0; j < degree; ++j) d += known[j] * place.parts[j];
+      total += half * place.weight * norm(d);
+    }
   }
   return total;
 }

@@ -33,10 +33,10 @@ std::string power(int exponent) { return exponent >= -2 && exponent <= 4 ? fmt::
 
 // A logarithmic axis: whole decades that hold all values.
 struct Decades {
-  int low = 0, high = 1;
+  int low = 99, high = -99;
   void hold(double value) {
     low = std::min(low, int(std::floor(std::log10(value))));
-    high = std::max(high, int(std::ceil(std::log10(value))));
+    high = std::max({high, low + 1, int(std::ceil(std::log10(value)))});
   }
   float part(double value) const { return float((std::log10(value) - low) / (high - low)); }
 };
@@ -76,14 +76,12 @@ void accuracyPicture(Context& context, float width, float height) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   if (!context.study) {
-    const char* text = context.results->motionValue() ? "Study this scene, at the left, shows here what accuracy costs in time." : "Open a patient first.";
-    list->AddText({corner.x + (width - ImGui::CalcTextSize(text).x) / 2, corner.y + height * 0.45f}, ImGui::GetColorU32(kMuted), text);
-    ImGui::Dummy({width, height});
+    emptyPlace(context.results->motionValue() ? "Study this scene, at the left, shows here what accuracy costs in time." : "Open a patient first.", width, height);
     return;
   }
   const Study& study = *context.study;
   const std::vector<std::string> solvers = solversOf(study);
-  Decades time{0, 1}, error{-2, 0};
+  Decades time, error{-2, 0};
   for (const StudyPoint& p : study.points) time.hold(std::max(p.milliseconds, 0.01)), error.hold(seen(p.rms));
 
   // The axes, a line for each decade.
@@ -126,7 +124,9 @@ void accuracyPicture(Context& context, float width, float height) {
     const ImU32 color = colorOf(solvers, p.solver);
     if (p.isPresent) {
       list->AddCircle(at, 2.1f * radius, IM_COL32(255, 255, 255, 255), 0, 2 * context.scale);
-      list->AddText({at.x + 2.6f * radius, at.y - 1.6f * em}, IM_COL32(255, 255, 255, 255), "this run");
+      const char* name = "this run";
+      const float wide = ImGui::CalcTextSize(name).x, beside = at.x + 2.6f * radius;   // on the left where the right is too near
+      list->AddText({beside + wide < corner.x + width ? beside : at.x - 2.6f * radius - wide, at.y - 1.6f * em}, IM_COL32(255, 255, 255, 255), name);
     } else if (p.status == SolveStatus::converged) {
       list->AddCircleFilled(at, radius, color);
     } else {
@@ -139,7 +139,7 @@ void accuracyPicture(Context& context, float width, float height) {
   // The legend.
   float at = high.x;
   for (auto solver = solvers.rbegin(); solver != solvers.rend(); ++solver) {
-    const std::string name = shortName(*solver);
+    const std::string name = readable(shortName(*solver));
     at -= ImGui::CalcTextSize(name.c_str()).x;
     list->AddText({at, corner.y + 2.4f * em}, ink, name.c_str());
     at -= 0.8f * em;

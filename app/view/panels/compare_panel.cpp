@@ -14,6 +14,7 @@ namespace pectora::view {
 namespace {
 
 constexpr const char* kLandmarks[] = {"neck", "navel", "nipple_right", "nipple_left"};
+constexpr double kFarLandmark = 10;   // mm after registration: farther than hands place the same point again
 constexpr const char* kSides[] = {"Skin before the operation", "Scan after the operation"};
 
 // The whole skin that was found, not only what the model covers.
@@ -70,6 +71,12 @@ std::pair<Vec3, double> boundsOf(const Surface& s) {
   return {(low + high) * 0.5, 0.5 * std::max(high.z - low.z, high.x - low.x)};
 }
 
+// What puts the scan onto the CT, once all landmarks do: with each further pair it would slip from under the mouse.
+const Registration* registeredBy(const Results& results, std::size_t landmarks) {
+  const auto* registration = Results::as<Registration>(results.byLandmarks);
+  return registration && registration->residuals.size() >= landmarks ? registration : nullptr;
+}
+
 }  // namespace
 
 Landmarks& ComparePanel::placed(Context& context, int side) { return side == 0 ? context.choices.ctLandmarks : context.choices.scanLandmarks; }
@@ -86,9 +93,9 @@ void ComparePanel::load(Context& context) {
   const std::shared_ptr<const Value> values[] = {r.before.value ? r.before.value : r.anatomy.value, r.scan.value};
   for (int side = 0; side < 2; ++side) {
     OneSide& s = sides_[side];
-    const std::shared_ptr<const void> map = side == 1 ? r.byLandmarks.value : nullptr;
+    const std::shared_ptr<const void> map = side == 1 && registeredBy(r, std::size(kLandmarks)) ? r.byLandmarks.value : nullptr;
     if (s.of == values[side] && s.mapOf == map) continue;
-    s.isFramed = s.isFramed && s.of == values[side];
+    s.isFramed = s.isFramed && s.of == values[side] && bool(s.mapOf) == bool(map);
     s.of = values[side], s.mapOf = map;
     show(context, s, values[side].get());
   }
@@ -103,9 +110,9 @@ void ComparePanel::show(Context& context, OneSide& s, const Value* value) {
   if (anatomy && anatomy->skin.size() > 1) s.shown = skinOf(*anatomy);
   if (mesh) s.shown.points = mesh->points, s.shown.triangles = mesh->triangles;
   if (cloud) s.shown.points = cloud->points, s.shown.normals = cloud->normals;
-  // A scan stands as the registration puts it; before there is one, with its longest way upright.
+  // A scan stands as the registration puts it; before that, with its longest way upright.
   if (&s == &sides_[1] && !s.shown.points.empty()) {
-    const auto* registration = Results::as<Registration>(context.results->byLandmarks);
+    const Registration* registration = registeredBy(*context.results, std::size(kLandmarks));
     s.toShown = registration ? registration->map : upright(s.shown.points, isTurned_);
     s.fromShown = inverse(s.toShown);
     for (Vec3& p : s.shown.points) p = s.toShown(p);
@@ -138,7 +145,9 @@ void ComparePanel::drawSide(Context& context, int side, ImVec2 size) {
   }
   if (input.isClicked)
     if (const auto hit = pick(s.shown, s.viewport.camera.ray(input.at.x, input.at.y))) {
-      const Vec3 position = s.fromShown(hit->position);
+      // A hand is no finer than a hundredth of a millimetre, and the script is to be read.
+      Vec3 position = s.fromShown(hit->position);
+      for (int a = 0; a < 3; ++a) position[a] = std::round(100 * position[a]) / 100;
       // What was not placed by hand yet begins as the phantom's own.
       for (int both = 0; both < 2; ++both)
         if (placed(context, both).points.empty()) placed(context, both).points = landmarks(context, both).points;
@@ -168,6 +177,10 @@ void ComparePanel::drawSide(Context& context, int side, ImVec2 size) {
 }
 
 void ComparePanel::draw(Context& context, float width, float height) {
+  if (!context.results->scan.value) {
+    emptyPlace(context.activity.isBusy ? "" : "Open a scan from after the operation at the left, or drop it on the window.", width, height);
+    return;
+  }
   load(context);
   const float gap = 4 * context.scale, half = std::floor((width - gap) / 2);
   drawSide(context, 0, {half, height});
@@ -180,35 +193,46 @@ void ComparePanel::controls(Context& context) {
   std::string& path = context.typedScan;
   heading("Scan after the operation");
   ImGui::SetNextItemWidth(-70 * context.scale);
-  const bool isEntered = textField("##scan", "PLY, STL, OBJ or FastSCAN text", path, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool isEntered = textField("##scan", "PLY, STL, OBJ or FastSCAN text", path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine(0, 6 * context.scale);
   if ((button("Open", "scan.open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);
   if (c.hasScan()) parameterControls(context, c.scan, "scan");
   else note(c.source == Source::phantom ? "The phantom brings its own scan." : "None is open.");
-  if (!context.results->scan.value) return;
+  const auto& scan = context.results->scan.value;
+  if (!scan) isPlacing_ = false;
+  // What nothing brings onto the CT yet is shown beside it, for its landmarks.
+  if (scan != met_ && !context.activity.isBusy) {
+    met_ = scan;
+    if (scan && !context.results->byLandmarks.value) isPlacing_ = isUnasked_ = true, next_ = 0;
+  }
+  if (isUnasked_ && registeredBy(*context.results, std::size(kLandmarks))) isPlacing_ = isUnasked_ = false;
+  if (!scan) return;
 
   heading("Landmarks");
-  if (ImGui::Checkbox("Place them by hand", &isPlacing_)) next_ = 0;
+  if (ImGui::Checkbox("Place them by hand", &isPlacing_)) isUnasked_ = false, next_ = 0;
   mark("landmarks.place");
   const auto* registration = Results::as<Registration>(context.results->byLandmarks);
   for (int i = 0; i < 4; ++i) {
     const std::string name = kLandmarks[i];
     std::string told;
+    bool isFar = false;
     const bool onCt = landmarks(context, 0).find(name), onScan = landmarks(context, 1).find(name);
     if (registration)
       for (const LandmarkResidual& residual : registration->residuals)
-        if (residual.name == name) told = fmt::format("{:.1f} mm", residual.residual);
+        if (residual.name == name) told = fmt::format("{:.1f} mm", residual.residual), isFar = residual.residual > kFarLandmark;
     if (told.empty()) told = onCt && onScan ? "" : onCt ? "on the CT" : onScan ? "on the scan" : "–";
     if (isPlacing_) {
       if (ImGui::RadioButton(("##" + name).c_str(), next_ == i)) next_ = i;
       mark("landmark." + name);
       ImGui::SameLine();
     }
-    row(readable(name).c_str(), told);
-    hint("Distance of the two after registration");
+    row(readable(name).c_str(), told, isFar ? &kWarm : nullptr);
+    hint(isFar ? "The two lie so far apart after registration: is it the same point on both, and the patient's right on the right?"
+               : "Distance of the two after registration");
   }
-  if (isPlacing_ && !registration && button("Turn the scan over", "scan.turn", {-1, 0})) isTurned_ = !isTurned_, sides_[1].of = nullptr;
-  if (isPlacing_) note("Click " + readable(kLandmarks[next_]) + " on either surface. Undo takes a click back.");
+  const bool canTurn = isPlacing_ && !registeredBy(*context.results, std::size(kLandmarks));
+  if (canTurn && button("Turn the scan over", "scan.turn", {-1, 0})) isTurned_ = !isTurned_, sides_[1].of = nullptr;
+  if (isPlacing_) note("Click " + readable(kLandmarks[next_]) + " on either surface. Undo takes a click back. Or drop a file of landmarks (.csv) on the window.");
   if (!c.ctLandmarks.points.empty() && button("Forget those placed by hand", "landmarks.forget", {-1, 0})) {
     c.ctLandmarks = c.scanLandmarks = {};
     context.changed(false);

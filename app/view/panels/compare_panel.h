@@ -10,7 +10,7 @@ class ComparePanel {
  public:
   explicit ComparePanel(const Renderer& renderer) : renderer_(renderer) {}
   void controls(Context& context);
-  /// The two surfaces side by side, to place landmarks on. Only while isPlacing().
+  /// The two surfaces side by side, to place landmarks on, while isPlacing(); without a scan, what to do.
   void draw(Context& context, float width, float height);
   bool isPlacing() const { return isPlacing_; }
   bool isCoarse() const { return isPlacing_ && (sides_[0].viewport.isCoarse() || sides_[1].viewport.isCoarse()); }
@@ -37,7 +37,9 @@ class ComparePanel {
 
   const Renderer& renderer_;
   OneSide sides_[2];
+  std::shared_ptr<const void> met_;   // the scan that was last looked at
   bool isPlacing_ = false;
+  bool isUnasked_ = false;  // placing began by itself, and ends so
   bool isTurned_ = false;   // a scan without registration is shown upside down
   int next_ = 0;   // index of the landmark that a click places
   Landmarks none_;

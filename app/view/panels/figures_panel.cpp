@@ -53,6 +53,20 @@ void progressBar(double fraction) {
   ImGui::SameLine();
 }
 
+// A line that is cut where it does not fit; its tooltip has all of it.
+void cutLine(const std::string& text, float room, const ImVec4& color) {
+  std::string shown = text.substr(0, text.find('\n'));
+  const auto isWide = [&] { return ImGui::CalcTextSize((shown + "…").c_str()).x > room; };
+  const bool isCut = shown != text || isWide();
+  // Letter by letter, which in UTF-8 end with their first byte.
+  for (bool isWhole = true; !shown.empty() && (!isWhole || isWide());) {
+    isWhole = (static_cast<unsigned char>(shown.back()) & 0xC0) != 0x80;
+    shown.pop_back();
+  }
+  ImGui::TextColored(color, "%s%s", shown.c_str(), isCut ? "…" : "");
+  if (isCut) hint(text);
+}
+
 }  // namespace
 
 void figuresPanel(Context& context) {
@@ -134,6 +148,9 @@ void statusLine(Context& context) {
   const Activity& activity = context.activity;
   const Results& r = *context.results;
   const bool isUnfinished = !activity.isBusy && r.ct.value && (!r.motion.value || r.isPreview);
+  const char* disclaimer = "Research software, not a medical device";
+  const float end = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(disclaimer).x;
+  const auto room = [&] { return end - ImGui::GetCursorPosX() - 2 * ImGui::GetFontSize(); };
   ImGui::AlignTextToFramePadding();
   if (context.turntable) {
     progressBar(double(context.turntable->drawn) / Turntable::kPictures);
@@ -146,20 +163,17 @@ void statusLine(Context& context) {
       if (button("Cancel", "cancel")) context.worker().cancel();
       ImGui::SameLine();
     }
-    ImGui::TextColored(kMuted, "%s", activity.what.empty() ? activity.stage.c_str() : (activity.stage + ": " + activity.what).c_str());
+    cutLine(activity.what.empty() ? activity.stage : activity.stage + ": " + activity.what, room(), kMuted);
   } else if (!r.error.empty() || !context.message.empty()) {
-    const std::string& text = context.message.empty() ? r.error : context.message;
-    ImGui::TextColored(kBad, "%s", text.substr(0, text.find('\n')).c_str());
-    hint(text);
+    cutLine(context.message.empty() ? r.error : context.message, room(), kBad);
   } else {
-    ImGui::TextColored(kMuted, "%s", isUnfinished ? "Not finished" : r.motion.value || r.after.value ? "Ready" : "");
+    cutLine(isUnfinished ? "Not finished" : !context.notice.empty() ? context.notice : r.motion.value || r.after.value ? "Ready" : "", room(), kMuted);
     if (isUnfinished) {
       ImGui::SameLine();
       if (button("Go on", "resume")) context.changed(false);
     }
   }
-  const char* disclaimer = "Research software, not a medical device";
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(disclaimer).x);
+  ImGui::SameLine(end);
   ImGui::TextColored(kMuted, "%s", disclaimer);
 }
 

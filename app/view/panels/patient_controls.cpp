@@ -9,18 +9,20 @@ void patientControls(Context& context) {
   std::string& path = context.typedPath;
   heading("Open");
   ImGui::SetNextItemWidth(-70 * context.scale);
-  const bool isEntered = textField("##path", "Folder, script or scan", path, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool isEntered = textField("##path", "Folder, script or scan", path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   mark("open.path");
   ImGui::SameLine(0, 6 * context.scale);
   if ((button("Open", "open", {-1, 0}) || isEntered) && !path.empty()) context.open(path);
-  note("A folder of DICOM files or of results, a script, a preset, or a scan; or drop it on the window.");
+  note("A folder of DICOM files or of results, a script, a preset, a scan, or its landmarks (.csv); or drop it on the window.");
 
   if (!context.recent.paths().empty()) {
     heading("Recent");
     std::string chosen;
     for (const std::string& known : context.recent.paths()) {
-      const std::string name = std::filesystem::path(known).filename().string();
-      if (ImGui::Selectable((name + "##" + known).c_str())) chosen = known;
+      // With the folder that it is in: many a patient's is called "dicom".
+      const std::filesystem::path whole(known);
+      const std::string name = whole.filename().string(), above = whole.parent_path().filename().string();
+      if (ImGui::Selectable(((above.empty() ? name : above + "/" + name) + "##" + known).c_str())) chosen = known;
       mark("recent." + name);
       hint(known);
     }

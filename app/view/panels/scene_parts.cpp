@@ -200,7 +200,7 @@ std::vector<Item> SceneParts::items(const Context& context) const {
   if (o.hasScan) list.push_back({&gpuScan_, {.color = kScan, .map = hasDistance_ ? ColorMap::diverging : ColorMap::none, .low = low(context), .high = high(context)}});
   if (o.hasSprings && context.picked && o.skin != SkinLook::hidden) {
     list.push_back({&gpuPicked_, {.color = kMarker, .isClipped = false}});
-    list.push_back({&gpuSprings_, {.map = ColorMap::diverging, .low = -1, .high = 1, .isClipped = false}});
+    if (o.part == 1) list.push_back({&gpuSprings_, {.map = ColorMap::diverging, .low = -1, .high = 1, .isClipped = false}});
   }
   Look skin{.color = kSkin};
   if (o.skin == SkinLook::glass) skin.isGlass = true;

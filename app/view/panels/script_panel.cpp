@@ -4,7 +4,6 @@
 #include "app/view/session/script_text.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 namespace pectora::view {
@@ -16,23 +15,20 @@ void ScriptPanel::controls(Context& context) {
 
   heading("Files");
   ImGui::SetNextItemWidth(-1);
-  textField("##folder", "Folder to write into", folder_);
+  textField("##folder", "Folder to write into", context.outFolder);
   mark("export.folder");
-  const auto inFolder = [&](const char* name) {
-    std::error_code ignored;
-    std::filesystem::create_directories(folder_, ignored);
-    return folder_ + "/" + name;
-  };
   if (button("Save the script", "script.save", {-1, 0})) {
-    std::ofstream file(inFolder("session.lua"));
-    file << scriptOf(context.choices);
-    if (!file.good()) context.message = "The script cannot be written into " + folder_;
+    const std::string path = context.outPath("session.lua");
+    std::ofstream file(path);
+    file << scriptOf(context.choices) << std::flush;
+    if (file.good()) context.notice = "The script is " + path;
+    else context.message = "The script cannot be written to " + path;
   }
-  if (button("Screenshot", "screenshot", {-1, 0})) context.wantedPicture = inFolder("screenshot.png");
   ImGui::BeginDisabled(!context.results->motionValue());
-  if (button("Turntable of 36 pictures", "turntable", {-1, 0})) context.turntable = Turntable{inFolder("turntable")};
+  if (button("Turntable of 36 pictures", "turntable", {-1, 0})) context.turntable = Turntable{context.outPath("turntable")};
+  hint("Around the chest as it was last shown: its colours, bones and bar");
   if (button("Export all results", "export", {-1, 0}))
-    context.worker().run("export", [folder = folder_, worker = &context.worker()](Pipeline& pipeline) {
+    context.worker().run("export", [folder = context.outFolder, worker = &context.worker()](Pipeline& pipeline) {
       pipeline.exportTo(folder);
       worker->log(LogLine::Kind::print, "Results are in " + folder);
     });

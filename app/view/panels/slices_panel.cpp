@@ -15,6 +15,19 @@ constexpr const char* kNames[] = {"Axial", "Sagittal", "Coronal"};
 // Axis of the volume that goes through each plane, and those across and down its picture.
 constexpr int kThrough[] = {2, 0, 1}, kAcross[] = {0, 1, 0}, kDown[] = {1, 2, 2};
 
+// A rib's number beside it, outwards, where the wall is dark.
+void drawLabel(const std::string& text, const std::vector<ImVec2>& outline, Side side, ImU32 color) {
+  const float sign = side == Side::right ? -1.f : 1.f;   // the patient's right is on the left
+  const ImVec2 outermost = *std::max_element(outline.begin(), outline.end(), [&](ImVec2 a, ImVec2 b) { return sign * a.x < sign * b.x; });
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float gap = 0.3f * size.y;
+  const ImVec2 at{outermost.x + (side == Side::right ? -size.x - gap : gap), outermost.y - size.y / 2};
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (const ImVec2 aside : {ImVec2{-1, 0}, ImVec2{1, 0}, ImVec2{0, -1}, ImVec2{0, 1}})
+    list->AddText({at.x + aside.x, at.y + aside.y}, IM_COL32(0, 0, 0, 220), text.c_str());
+  list->AddText(at, color, text.c_str());
+}
+
 double spacingOf(const Volume& volume, int axis) { return volume.grid.spacing[axis]; }
 
 }  // namespace
@@ -156,7 +169,7 @@ void SlicesPanel::drawPlane(Context& context, const Volume& volume, Plane plane,
       if (o.isDots)
         for (ImVec2 at : points) list->AddRectFilled({at.x - context.scale, at.y - context.scale}, {at.x + context.scale, at.y + context.scale}, o.color);
       else list->AddPolyline(points.data(), int(points.size()), o.color, o.isClosed ? ImDrawFlags_Closed : 0, (corrections_.isChosen(o.side, o.number) ? 2.8f : 1.4f) * context.scale);
-      if (hasLabels_ && !o.label.empty()) list->AddText({points.front().x + 3, points.front().y + 3}, o.color, o.label.c_str());
+      if (hasLabels_ && !o.label.empty()) drawLabel(o.label, points, o.side, o.color);
     }
 
   drawJoints(context, volume, plane, corner, scale);

@@ -17,7 +17,7 @@ std::string shortName(const std::string& id) { return id.substr(id.find('.') + 1
 void tellWorth(const Context& context, const std::string& id, bool isOn) {
   const auto worth = std::find_if(context.worths.begin(), context.worths.end(), [&](const EffectWorth& w) { return w.id == id; });
   if (worth == context.worths.end() || worth->isOn != isOn) return;
-  std::string text = fmt::format("{} mm · {:.2f} ms", figure(worth->largest), worth->milliseconds);
+  std::string text = fmt::format("{} mm · {} ms", figure(worth->largest), worth->milliseconds < 0.005 ? "< 0.01" : fmt::format("{:.2f}", worth->milliseconds));
   std::string told = fmt::format("{} it the skin would lie elsewhere by {:.2f} mm at most and {:.2f} mm RMS; it costs {:.2f} ms of each evaluation of all forces",
                                  isOn ? "Without" : "With", worth->largest, worth->rms, worth->milliseconds);
   if (!worth->refused.empty()) text = isOn ? "needed" : "cannot be solved", told = worth->refused;

@@ -10,6 +10,16 @@ namespace {
 
 std::map<std::string, ImVec4> marks;
 
+// The item under the mouse that has a tooltip.
+constexpr double kRest = 0.4;   // s, until it is shown
+struct Hovered {
+  std::string text;
+  ImVec2 at;                    // its upper left corner
+  int frame = 0;                // in which it was last hovered
+  double since = 0;             // the mouse has rested on it
+  bool isPressed = false, isShown = false;
+} hovered;
+
 // The text field grows with its text.
 int growText(ImGuiInputTextCallbackData* data) {
   auto& text = *static_cast<std::string*>(data->UserData);
@@ -26,10 +36,13 @@ bool isLogarithmic(const Parameter& p) {
   return p.unit == "N/mm" && p.usual.low == 0;
 }
 
-std::string numberFormat(const Parameter& p) {
+// So many digits as the slider's range calls for, and those that the value has beyond.
+std::string numberFormat(const Parameter& p, double value) {
   const double span = p.usual.high - p.usual.low;
-  std::string format = isLogarithmic(p) ? "%.3g" : span > 50 ? "%.0f" : span > 5 ? "%.1f" : "%.2f";
-  if (p.type == "integer") format = "%.0f";
+  int digits = p.type == "integer" || span > 50 ? 0 : span > 5 ? 1 : 2;
+  const auto shows = [&] { return std::abs(value - std::round(value * std::pow(10, digits)) / std::pow(10, digits)) < 1e-9; };
+  while (p.type != "integer" && digits < 2 && !shows()) ++digits;
+  std::string format = isLogarithmic(p) ? "%.3g" : fmt::format("%.{}f", digits);
   if (p.unit.empty()) return format;
   std::string unit = p.unit;
   for (std::size_t at = 0; (at = unit.find('%', at)) != std::string::npos; at += 2) unit.insert(at, "%");
@@ -66,6 +79,7 @@ std::string readable(const std::string& name) {
   std::replace(text.begin(), text.end(), '_', ' ');
   if (text == "bmi" || text == "fov") return text == "bmi" ? "BMI" : "Field of view";
   if (text == "lbfgs") return "L-BFGS";
+  if (const auto at = text.find(" haller"); at != std::string::npos) text[at + 1] = 'H';
   if (text.starts_with("youngs")) text = "young's" + text.substr(6);
   if (text.starts_with("poissons")) text = "poisson's" + text.substr(8);
   if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
@@ -89,11 +103,34 @@ void row(const char* name, const std::string& value, const ImVec4* color) {
 
 void hint(const std::string& text) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  const double now = ImGui::GetTime();
+  const int frame = ImGui::GetFrameCount();
+  const ImVec2 at = ImGui::GetItemRectMin();
+  const bool wasHovered = hovered.frame == frame || hovered.frame + 1 == frame;
+  if (!wasHovered || hovered.text != text || hovered.at.x != at.x || hovered.at.y != at.y) hovered = {text, at, frame, now};
+  hovered.frame = frame;
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  if (!hovered.isShown && (moved.x != 0 || moved.y != 0)) hovered.since = now;
+  hovered.isPressed = hovered.isPressed || ImGui::IsAnyMouseDown();
+  hovered.isShown = !hovered.isPressed && now - hovered.since >= kRest;
+  if (!hovered.isShown) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
+  markPlace("tooltip", ImGui::GetWindowPos(), ImGui::GetWindowSize());
   ImGui::EndTooltip();
+}
+
+double untilHint() {
+  const bool isWaiting = hovered.frame == ImGui::GetFrameCount() && !hovered.isShown && !hovered.isPressed;
+  return isWaiting ? std::max(0.01, kRest - (ImGui::GetTime() - hovered.since)) : 1e9;
+}
+
+void emptyPlace(const char* text, float width, float height) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddText({corner.x + (width - ImGui::CalcTextSize(text).x) / 2, corner.y + height * 0.45f}, ImGui::GetColorU32(kMuted), text);
+  ImGui::Dummy({width, height});
 }
 
 bool textField(const char* label, const char* ghost, std::string& text, ImGuiInputTextFlags flags) {
@@ -132,7 +169,7 @@ void parameterControl(Context& context, const Parameter& p, Settings& settings, 
     const bool hasRange = std::isfinite(p.usual.low) && std::isfinite(p.usual.high);
     const double low = hasRange ? std::min(p.usual.low, *number) : 0, high = hasRange ? std::max(p.usual.high, *number) : 0;
     const int flags = isLogarithmic(p) ? ImGuiSliderFlags_Logarithmic : 0;
-    isEdited = ImGui::SliderScalar("##control", ImGuiDataType_Double, number, &low, &high, numberFormat(p).c_str(), flags);
+    isEdited = ImGui::SliderScalar("##control", ImGuiDataType_Double, number, &low, &high, numberFormat(p, *number).c_str(), flags);
     isDragged = ImGui::IsItemActive();
     if (p.type == "integer") *number = std::round(*number);
     *number = std::clamp(*number, p.hard.low, p.hard.high);

@@ -40,8 +40,13 @@ std::string readable(const std::string& name);
 std::string figure(double value);
 /// Name on the left, value on the right of a panel's width.
 void row(const char* name, const std::string& value, const ImVec4* color = nullptr);
-/// A tooltip of the last item, wrapped.
+/// A tooltip of the last item, wrapped. It waits until the mouse rests there, and is gone once a button is pressed: it would cover what
+/// comes next.
 void hint(const std::string& text);
+/// Seconds until a tooltip that waits is due, for a window that draws nothing meanwhile; 1e9: none waits.
+double untilHint();
+/// Muted text in the middle of a place that is empty.
+void emptyPlace(const char* text, float width, float height);
 /// A text field over a string.
 bool textField(const char* label, const char* ghost, std::string& text, ImGuiInputTextFlags flags = 0);
 bool button(const std::string& label, const std::string& name, ImVec2 size = {});

@@ -9,6 +9,7 @@
 namespace pectora::view {
 namespace {
 
+constexpr float kOverlap = 1.8f;       // points of a cloud are as wide as so many of their spacings: it closes
 constexpr float kUnknown = -1e30f;   // a value that is not known, for the shader
 
 // What a program is made for. What one does not need it does not pay for: a renderer in software takes every branch.
@@ -53,7 +54,7 @@ layout(location = 2) in float value;
 uniform mat4 matrix;
 uniform vec4 clip;
 uniform vec3 eye, color, stops[9];
-uniform float pointSize, low, high;
+uniform float pointSize, pointsBefore, low, high;
 #ifdef DENSE
 out vec4 light;
 #else
@@ -61,7 +62,7 @@ out vec3 base, across, toEye;
 #endif
 void main() {
   gl_Position = matrix * vec4(position, 1);
-  gl_PointSize = pointSize;
+  gl_PointSize = max(pointSize, pointsBefore / gl_Position.w);
 #ifdef CUT
   gl_ClipDistance[0] = clip.w - dot(clip.xyz, position);
 #endif
@@ -155,6 +156,7 @@ void GpuSurface::uploadPoints(const Surface& surface) {
 
 void GpuSurface::upload(const Surface& surface) {
   uploadPoints(surface);
+  pointMm_ = surface.triangles.empty() ? kOverlap * float(pointSpacing(surface.points)) : 0;
   glBindVertexArray(array_.id());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.id());
   indices_ = surface.triangles.size() * 3;
@@ -180,6 +182,7 @@ void Renderer::drawItem(const View& view, const Item& item) const {
   set("eye", view.eye);
   set("keyLight", view.key);
   glUniform1f(program.uniform("pointSize"), view.pointSize);
+  glUniform1f(program.uniform("pointsBefore"), item.surface->pointMm_ * view.pixelsAtOne);
   glUniform3fv(program.uniform("color"), 1, look.color.data());
   if (isCut) glUniform4f(program.uniform("clip"), float(view.clip.normal.x), float(view.clip.normal.y), float(view.clip.normal.z), float(view.clip.offset));
   if (isMapped) {
@@ -204,7 +207,10 @@ void Renderer::draw(const Frame& frame, const Camera& camera, const std::vector<
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
   const Vec3 eye = camera.eye(), toEye = normalized(eye - camera.target);
-  const View view{camera.matrix(), eye, normalized(toEye * 0.75 + camera.up() * 0.55 - camera.right() * 0.45), clip, pointSize * float(frame.fineness())};
+  // A turn leaves a matrix row's length: the second tells how high a millimetre is at a depth of one.
+  const Matrix4 m = camera.matrix();
+  const float pixelsAtOne = std::hypot(m[1], m[5], m[9]) * 0.5f * float(frame.height() * frame.fineness());
+  const View view{m, eye, normalized(toEye * 0.75 + camera.up() * 0.55 - camera.right() * 0.45), clip, pointSize * float(frame.fineness()), pixelsAtOne};
   for (const Item& item : items) {
     if (item.look.isGlass || item.surface->isEmpty()) continue;
     drawItem(view, item);

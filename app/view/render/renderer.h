@@ -31,6 +31,7 @@ class GpuSurface {
   friend class Renderer;
   GpuObject array_{GpuKind::vertexArray}, vertices_{GpuKind::buffer}, triangles_{GpuKind::buffer};
   std::size_t points_ = 0, indices_ = 0;
+  float pointMm_ = 0;   // how wide a cloud's points are
   std::vector<float> staging_;
 };
 
@@ -49,7 +50,7 @@ struct ClipPlane {
 class Renderer {
  public:
   Renderer();
-  /// `pointSize` in pixels of the picture.
+  /// Points of clouds are so wide that they close, and at least `pointSize` pixels of the picture.
   void draw(const Frame& frame, const Camera& camera, const std::vector<Item>& items, const ClipPlane& clip, float pointSize) const;
 
  private:
@@ -59,6 +60,7 @@ class Renderer {
     Vec3 eye, key;   // key: the way to the key light
     ClipPlane clip;
     float pointSize;
+    float pixelsAtOne;   // of a millimetre at a depth of one
   };
   void drawItem(const View& view, const Item& item) const;
   std::vector<Program> programs_;   // one for each way that a surface can look

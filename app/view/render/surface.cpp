@@ -2,6 +2,7 @@
 
 #include "kernel/value/curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -142,6 +143,26 @@ Surface ball(Vec3 center, double radius) {
   joinRings(s, kRings + 1, kSides);
   for (const Vec3& p : s.points) s.normals.push_back(normalized(p - center));
   return s;
+}
+
+double pointSpacing(std::span<const Vec3> points) {
+  if (points.empty()) return 0;
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points)
+    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  const double side = norm(high - low) / 100;
+  if (side == 0) return 0;
+  // Of boxes so large, those with a point in them: a surface fills about 1.25 of a side's square in each that it meets.
+  std::vector<std::uint32_t> boxes;
+  boxes.reserve(points.size());
+  for (const Vec3& p : points) {
+    std::uint32_t box = 0;
+    for (int a = 0; a < 3; ++a) box = box * 128 + std::uint32_t((p[a] - low[a]) / side);
+    boxes.push_back(box);
+  }
+  std::sort(boxes.begin(), boxes.end());
+  const auto met = std::unique(boxes.begin(), boxes.end()) - boxes.begin();
+  return side * std::sqrt(1.25 * double(met) / double(points.size()));
 }
 
 std::optional<Hit> pick(const Surface& surface, const Ray& ray) {

@@ -30,6 +30,9 @@ Surface loft(const std::vector<std::vector<Vec3>>& contours);
 Surface sweptBar(std::span<const Vec3> line, Vec3 up, double width, double height);
 Surface ball(Vec3 center, double radius);
 
+/// About how far apart the points of a cloud lie on the surface that they are of, mm; 0 for fewer than two places.
+double pointSpacing(std::span<const Vec3> points);
+
 struct Hit {
   Vec3 position;
   double distance = 0;   ///< along the ray, mm

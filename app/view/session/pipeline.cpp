@@ -233,6 +233,11 @@ void Pipeline::starting(const std::string& id, const Settings& settings, const R
   if (calls_) calls_->starting(id, settings, inputs);
 }
 
+std::pair<Landmarks, Landmarks> Pipeline::landmarksIn(const std::string& path) {
+  const auto side = [&](const char* set) { return *Results::as<Landmarks>(runner_.run("scan.landmarks", {{"path", path}, {"set", std::string(set)}}, {})[0]); };
+  return {side("ct"), side("scan")};
+}
+
 Choices Pipeline::openedScript(const Choices& present, const std::string& path) {
   return view::openedScript(present, path, runner_, registry_, messages_, cancel_, calls_);
 }

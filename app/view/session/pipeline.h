@@ -41,6 +41,8 @@ class Pipeline {
   void exportTo(const std::string& folder);
   /// A line of the console, which sees the results as ct, anatomy, cage, scene, plan, motion, comparison.
   void evaluate(const std::string& code);
+  /// The landmarks on the CT's skin and on the scan in a file that holds both. Throws Error.
+  std::pair<Landmarks, Landmarks> landmarksIn(const std::string& path);
   /// As in opened_script.h.
   Choices openedScript(const Choices& present, const std::string& path);
   /// Called by the runner before each call.

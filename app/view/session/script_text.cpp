@@ -51,7 +51,7 @@ std::string landmarkCall(const Landmarks& landmarks) {
     names.push_back(l.name);
     positions.insert(positions.end(), {l.position.x, l.position.y, l.position.z});
   }
-  return fmt::format("scan.landmarks{{ names = {}, positions = {} }}", literal(names), literal(positions));
+  return fmt::format("scan.landmarks{{\n  names = {},\n  positions = {} }}", literal(names), literal(positions));
 }
 
 // The comparison with skins of these names, where there is a scan and a way to bring it here; otherwise nothing.

@@ -35,16 +35,18 @@ Bar shapeBar(const RibCage& cage, Vec3 point, double lift, const RigidMotion& mo
     Vec3 crest, side;
     bool found = false;
   };
+  std::vector<Vec3> near;
+  for (const RibCurve& rib : cage.ribs)
+    for (const Vec3& p : rib.curve.sample(200))
+      if (std::abs(dot(p - lifted, bar.up)) <= 12) near.push_back(p);
   const auto flank = [&](double sign) {
     Flank f;
     f.side = {point.x, 0, 0};
-    for (const RibCurve& rib : cage.ribs) {
-      for (const Vec3& p : rib.curve.sample(200)) {
-        if (std::abs(dot(p - lifted, bar.up)) > 12 || sign * (p.x - point.x) < 30) continue;
-        if (!f.found || p.y < f.crest.y) f.crest = p;
-        if (!f.found || sign * p.x > sign * f.side.x) f.side = p;
-        f.found = true;
-      }
+    for (const Vec3& p : near) {
+      if (sign * (p.x - point.x) < 30) continue;
+      if (!f.found || p.y < f.crest.y) f.crest = p;
+      if (!f.found || sign * p.x > sign * f.side.x) f.side = p;
+      f.found = true;
     }
     return f;
   };

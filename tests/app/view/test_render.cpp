@@ -119,6 +119,39 @@ TEST(Renderer, CutsWhatLiesBeforeThePlaneAndOnlyWhereThatIsAskedFor) {
   EXPECT_EQ(openGlErrors(), 0);
 }
 
+TEST(Renderer, ClosesACloudInPicturesOfAnySizeAndFromAnyDistance) {
+  // A square of points 2 mm apart, as a scanner's, not quite in rows.
+  Surface cloud;
+  for (int r = 0; r < 100; ++r)
+    for (int c = 0; c < 100; ++c) cloud.points.push_back({2.0 * c - 100 + 0.6 * std::sin(7.0 * r), 0.5 * std::sin(3.0 * c), 2.0 * r - 100 + 0.6 * std::sin(5.0 * c)});
+  EXPECT_NEAR(pointSpacing(cloud.points), 2, 0.5);   // by boxes of 2.8 mm
+  const ImGuiHolder imgui;
+  const auto target = makeOffscreen(200, 200, 1);
+  const Renderer renderer;
+  GpuSurface gpu;
+  gpu.upload(cloud);
+  for (const int side : {150, 600, 1500})
+    for (const double radius : {60.0, 200.0}) {
+      Frame frame;
+      frame.resize(side, side, false);
+      Camera camera;
+      camera.frame({}, radius);
+      renderer.draw(frame, camera, {{&gpu, {.color = {1, 0, 0}}}}, {}, 1);
+      const std::vector<unsigned char> rgba = readPixels(frame.framebuffer(), side, side);
+      int gaps = 0, inside = 0;
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+          const Vec3 at = camera.onPlane({}, (x + 0.5) / side, (y + 0.5) / side);
+          if (std::abs(at.x) > 95 || std::abs(at.z) > 95) continue;
+          ++inside;
+          gaps += rgba[4 * (std::size_t(y) * side + x)] < rgba[4 * (std::size_t(y) * side + x) + 2] + 20;
+        }
+      EXPECT_GT(inside, 1000);
+      EXPECT_EQ(gaps, 0) << side << " pixels, " << radius << " mm";
+    }
+  EXPECT_EQ(openGlErrors(), 0);
+}
+
 TEST(Pick, FindsTheFirstSurfaceAndItsNearestPoint) {
   const Surface s = ball({0, 0, 0}, 10);
   const auto hit = pick(s, {{0.5, -100, 0.7}, {0, 1, 0}});

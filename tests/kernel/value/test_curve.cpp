@@ -45,6 +45,20 @@ TEST(Curve, LengthAgreesWithAFinePolyline) {
   EXPECT_NEAR(curve.length(), polylineLength(curve.sample(20001)), 1e-3);
 }
 
+TEST(Curve, LengthOfAParabolaIsItsClosedForm) {
+  // y = x^2 from 0 to 1, in one piece and in two, scaled to a size in mm.
+  const double exact = 100 * (std::sqrt(5.0) / 2 + std::asinh(2.0) / 4);
+  const Curve whole{2, clampedKnots(3, 2), {{0, 0, 0}, {50, 0, 0}, {100, 100, 0}}};
+  EXPECT_NEAR(whole.length(), exact, 1e-9);
+  const Curve halves{2, clampedKnots(4, 2), {{0, 0, 0}, {25, 0, 0}, {75, 50, 0}, {100, 100, 0}}};
+  EXPECT_NEAR(halves.length(), exact, 1e-9);
+  // The same, with its degree raised.
+  const Curve cubic{3, clampedKnots(4, 3), {{0, 0, 0}, {100.0 / 3, 0, 0}, {200.0 / 3, 100.0 / 3, 0}, {100, 100, 0}}};
+  EXPECT_NEAR(cubic.length(), exact, 1e-9);
+  const Curve line{1, clampedKnots(2, 1), {{1, 2, 3}, {4, 6, 15}}};
+  EXPECT_NEAR(line.length(), 13, 1e-12);
+}
+
 TEST(Curve, ClosestPointIsPerpendicular) {
   const Curve curve = wavy();
   const Vec3 p{31, 20, 3};
