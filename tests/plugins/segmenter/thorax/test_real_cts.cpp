@@ -79,6 +79,14 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
   }
 }
 
+TEST_P(RealCt, HasNoJunctionWhereTheCtsBorderCutsARib) {
+  const double lowest = anatomy->skin.front().z;
+  for (const Rib& rib : anatomy->ribs)
+    if (rib.centerline.back().z < lowest + 4) {
+      EXPECT_FALSE(rib.reachesJunction) << sideName(rib.side) << rib.number;
+    }
+}
+
 TEST_P(RealCt, HasLayersThatRiseLevelByLevelAndDoNotCrossThemselves) {
   ASSERT_EQ(anatomy->skin.size(), anatomy->pleura.size());
   for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
@@ -148,6 +156,23 @@ TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
     if (range.what == "clipped skin") {
       EXPECT_NEAR(range.low - lowest, 191, 3);
     }
+}
+
+TEST(RealCts, OfAWholeThoraxHasItsManubriumUpToTheNotchBetweenTheClavicles) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // By eye, in slices of 1 mm: it ends at slice 221, clavicles beside it from 208 on.
+  EXPECT_NEAR(anatomy->sternum.jugularNotch.z - anatomy->skin.front().z, 221, 3);
+}
+
+TEST(RealCts, OfAWholeThoraxHasAManubriumWithoutTheOssifiedCartilagesBesideIt) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // By eye it is 52 to 58 mm wide where the first ribs' ossified cartilages touch it; with what they add, 68 and more.
+  for (const std::vector<Vec3>& contour : anatomy->sternum.contours) {
+    const auto [right, left] = std::minmax_element(contour.begin(), contour.end(), [](Vec3 a, Vec3 b) { return a.x < b.x; });
+    EXPECT_LT(left->x - right->x, 63) << "at slice " << contour.front().z - anatomy->skin.front().z;
+  }
 }
 
 TEST(RealCts, OfAWholeThoraxHasRibsOfALengthOnBothSides) {
