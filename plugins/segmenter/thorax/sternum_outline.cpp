@@ -76,6 +76,7 @@ SternumSlice outlineIn(const Field& field, int slice, const SternumWindow& windo
   whole.slice = slice;
   Column middle;   // of the whole
   CutSides cut;
+  double filled = 0;
   for (int n = 0; n < kLevels; ++n) {
     const Pieces pieces = piecesIn(plane, boneHu * std::pow(kLevelStep, n));
     if (!pieces.crossesMiddle) break;
@@ -86,8 +87,8 @@ SternumSlice outlineIn(const Field& field, int slice, const SternumWindow& windo
     found.shape = shapeOf(found.contour);
     found.isSeen = found.shape.area > kLeastMm2;
     if (n == 0) {
-      whole = found, middle = pieces.middle, cut = cutSides(whole, window, window.touchMm);
-      if (pieces.area > kFilled * whole.shape.area || (!cut.right && !cut.left)) break;
+      whole = found, middle = pieces.middle, cut = cutSides(whole, window, window.touchMm), filled = pieces.area / whole.shape.area;
+      if (filled > kFilled || (!cut.right && !cut.left)) break;
       continue;
     }
     // What is left must still be the whole of it, not one of its cortices, nor less on a side where nothing touches.
@@ -96,7 +97,8 @@ SternumSlice outlineIn(const Field& field, int slice, const SternumWindow& windo
                          pieces.middle.back > middle.back - kCortexMm && (cut.right || has.right < had.right + kCortexMm) &&
                          (cut.left || has.left > had.left - kCortexMm);
     if (!isWhole) break;
-    if (found.shape.area < kParted * whole.shape.area) return found;
+    // A cortex that breaks up fills less.
+    if (found.shape.area < kParted * whole.shape.area && pieces.area / found.shape.area > filled) return found;
   }
   return whole;
 }

@@ -206,6 +206,24 @@ TEST(RealCts, OfAWholeThoraxHasAThinWallWhereNoLungShowsItBelowTheDiaphragm) {
   EXPECT_GT(levels, 10);
 }
 
+TEST(RealCts, OfLowerRibsHaveAWallBehindTheFrontsOfRibsThatBeginAboveThem) {
+  const auto anatomy = anatomyOf("cptac_c3l00189");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/cptac_c3l00189";
+  // By eye: in slices 29 to 32 (of 5 mm) the inner wall crosses y = -67 on the left at x = 55 to 66, behind the sixth rib's front, which
+  // cannot be tracked since its back is not in view; a wall that only follows the skin of the breast lies at 79.
+  int levels = 0;
+  for (const LayerSlice& pleura : anatomy->pleura) {
+    if (pleura.z < -35 || pleura.z > -17) continue;
+    for (std::size_t n = 1; n < pleura.points.size(); ++n) {
+      const Vec3 a = pleura.points[n - 1], b = pleura.points[n];
+      if ((a.y < -67) == (b.y < -67) || a.x < 0) continue;
+      EXPECT_NEAR(a.x, 60, 10) << "at z " << pleura.z;
+      ++levels;
+    }
+  }
+  EXPECT_EQ(levels, 4);
+}
+
 TEST(RealCts, ThatShowTheAngleOfLouisButNeitherTheFirstNorTheLastRibAreCountedFromTheSecond) {
   const auto anatomy = anatomyOf("acrin_flt_013");
   if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/acrin_flt_013";
