@@ -20,10 +20,10 @@ struct CutSides {
 CutSides cutSides(const SternumSlice& slice, const SternumWindow& window, double marginMm);
 
 /// The hull of the bone in the window whose middle is at most 18 mm aside and 12 mm before or behind (not calcified cartilage, nor a
-/// clavicle's head); not seen if none crosses the midline. Bone is what is above `boneHu`. Where it comes near the window's border (touchMm) and
-/// does not fill its hull by 0.92, something touches the sternum there: then the lowest of some levels up to twice as high counts at
-/// which a tenth of the hull and more comes off and the rest is filled better, but the other side, and front and back on the midline, stay
-/// where they are; if there is none, the hull of all.
+/// clavicle's head); not seen if none crosses the midline. Bone is what is above `boneHu`. Where it comes near the window's border
+/// (touchMm) and does not fill its hull by 0.92, something touches the sternum there: then the lowest of some levels up to twice as high
+/// counts at which a tenth of the hull and more comes off and the rest is filled better, but the other side, and front and back on the
+/// midline, stay where they are; if there is none, the hull of all.
 SternumSlice outlineIn(const Field& field, int slice, const SternumWindow& window, double boneHu);
 
 }  // namespace pectora::thorax

@@ -12,7 +12,7 @@ namespace {
 constexpr float kAir = -1000, kFat = -100, kBone = 800, kWire = 2000;
 constexpr double kRadius = 45;
 
-/// A slice of 1 mm pixels: fat around (60, 60), a rib 5 mm below its front, and what is asked for on it, `thick` above the skin.
+/// A slice of 1 mm pixels: fat around (60, 60), a rib 6 mm below its front, and metal 15 mm wide and `wireThick` pixels thick on it.
 Plane chest(int wireThick) {
   Plane plane(121, 121, kAir);
   for (int j = 0; j < 121; ++j)
