@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kFarthestDeg = 75, kStepMm = 0.5, kRowMm = 2.5;
 constexpr float kCartilageHu = 85, kBoneHu = 220;
-constexpr double kShallowestMm = 6, kDeepestMm = 50, kThinnestMm = 4, kThickestMm = 18, kBehindMm = 2;
+constexpr double kShallowestMm = 6, kDeepestMm = 70, kThinnestMm = 4, kThickestMm = 18, kBehindMm = 2;
 constexpr double kInsideMm = 10, kOutsideMm = 30;   // of the bony surface
 constexpr double kLungMm = 8;   // from lung behind it
 constexpr double kAlikeMm = 3;
 constexpr double kPleuraMm = 1, kWeight = 0.02;   // behind the cartilage; of a sample, so that the wall takes no ridges from them
 constexpr int kLeastAlike = 5;
 
-/// Radius of the inner surface of the outermost cartilage on a ray; -1 if there is none.
-double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, double degrees, double skinRadius) {
+/// Radius of the inner surface of the outermost cartilage on a ray, or, if asked for, bone; -1 if there is none.
+double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, double degrees, double skinRadius, bool orBone) {
   const double z = slice * field.spacing().z;
   double outer = -1, inner = -1, sum = 0;   // of the run; of its values
   for (double r = skinRadius - kShallowestMm; r > std::max(10.0, skinRadius - kDeepestMm - kThickestMm); r -= kStepMm) {
@@ -31,7 +31,7 @@ double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, dou
     }
     if (outer < 0 || inner - r < kBehindMm) continue;
     const double thick = outer - inner;
-    if (thick >= kThinnestMm && thick <= kThickestMm && sum * kStepMm / (thick + kStepMm) < kBoneHu) return inner - 0.5 * kStepMm;
+    if (thick >= kThinnestMm && thick <= kThickestMm && (orBone || sum * kStepMm / (thick + kStepMm) < kBoneHu)) return inner - 0.5 * kStepMm;
     outer = -1;
   }
   return -1;
@@ -41,8 +41,8 @@ double cartilageRadius(const Field& field, const PolarGrid& grid, int slice, dou
 
 std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid, const std::vector<std::vector<double>>& skinRadius,
                                       const std::vector<std::vector<double>>& lung,
-                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface, int firstSlice,
-                                      double deepestLungMm) {
+                                      const std::vector<WallSample>& sternum, const std::vector<double>& bonySurface,
+                                      const std::vector<char>& isFarFromBone, int firstSlice, double deepestLungMm) {
   constexpr int angles = PolarGrid::kAngles;
   const int slices = int(skinRadius.size()), stride = std::max(1, int(std::lround(kRowMm / field.spacing().z))), rows = (slices - 1) / stride + 1;
   std::vector<double> radius(std::size_t(rows) * angles, -1);
@@ -55,7 +55,8 @@ std::vector<WallSample> cartilageWall(const Field& field, const PolarGrid& grid,
     const std::size_t s = row * stride;
     for (int n = 0; n < angles; ++n) {
       if (std::abs(PolarGrid::degrees(n)) > kFarthestDeg || skinRadius[s][n] <= 0 || isSternum[row * angles + n]) continue;
-      const double r = cartilageRadius(field, grid, firstSlice + int(s), PolarGrid::degrees(n), skinRadius[s][n]), bony = bonySurface[s * angles + n];
+      const double r = cartilageRadius(field, grid, firstSlice + int(s), PolarGrid::degrees(n), skinRadius[s][n], isFarFromBone[s * angles + n]);
+      const double bony = bonySurface[s * angles + n];
       const bool isShownByLung = std::abs(lung[s][n] - r) < kLungMm && lung[s][n] > bony - deepestLungMm;
       if (r > bony - kInsideMm && r < bony + kOutsideMm && !isShownByLung) radius[row * angles + n] = r;
     }

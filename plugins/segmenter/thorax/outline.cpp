@@ -158,6 +158,22 @@ double rmsDistance(const Loop& a, const Loop& b) {
   return std::sqrt((sum(a, b) + sum(b, a)) / double(a.size() + b.size()));
 }
 
+Column columnAt(const Loop& loop, double x) {
+  Column column;
+  for (std::size_t n = 0; n < loop.size(); ++n) {
+    const Point2 a = loop[n], b = loop[(n + 1) % loop.size()];
+    if ((a.x > x) == (b.x > x)) continue;
+    const double y = a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
+    column.front = std::min(column.front, y), column.back = std::max(column.back, y);
+  }
+  return column;
+}
+
+Sides sidesOf(const Loop& loop) {
+  const auto [right, left] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
+  return {right->x, left->x};
+}
+
 bool isInside(const Loop& loop, Point2 p) {
   bool inside = false;
   for (std::size_t n = 0, last = loop.size() - 1; n < loop.size(); last = n++) {

@@ -38,6 +38,18 @@ Shape shapeOf(const Loop& loop);
 /// Root mean square over the points of `a` and of `b` of the distance to the nearest point of the other contour.
 double rmsDistance(const Loop& a, const Loop& b);
 
+/// The least and greatest y of a contour (its front and back) where it crosses the column x; front > back if it does not.
+struct Column {
+  double front = 1e300, back = -1e300;
+};
+Column columnAt(const Loop& loop, double x);
+
+/// The least and greatest x of a contour: the patient's right and left.
+struct Sides {
+  double right, left;
+};
+Sides sidesOf(const Loop& loop);
+
 /// Whether a point lies within a closed polygon (even-odd rule).
 bool isInside(const Loop& loop, Point2 p);
 

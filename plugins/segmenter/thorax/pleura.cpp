@@ -208,8 +208,9 @@ std::vector<double> findPleura(const Field& field, const Body& body, const Polar
   UsualWall usual = usualWall(reference, all, outside, firstSlice, body.spacing.z);
   std::vector<double> radius = fitReference(usual);
   const std::size_t bones = bony.size(), known = reference.size();
+  const std::vector<char> isFarFromBone = farFrom(bony, firstSlice, slices, body.spacing.z);
   for (int round = 0; round < kCartilageRounds; ++round) {
-    const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, firstSlice, settings.deepestMm);
+    const std::vector<WallSample> cartilages = cartilageWall(field, grid, outside, lung, sternal, radius, isFarFromBone, firstSlice, settings.deepestMm);
     bony.resize(bones), reference.resize(known);
     bony.insert(bony.end(), cartilages.begin(), cartilages.end());
     reference.insert(reference.end(), cartilages.begin(), cartilages.end());

@@ -20,6 +20,7 @@ constexpr double kLeastArea = 0.35;         // of a rib's usual one
 constexpr double kReferenceFromMm = 15, kReferenceToMm = 75;   // behind the front of the inner part, where that is taken
 constexpr double kSearchBackMm = 44;
 constexpr int kLongestMergeMm = 30;
+constexpr double kBorderMm = 5;            // an end nearer to the CT's border than this is cut by it
 constexpr double kHighestSplit = 5;
 constexpr double kLargestAreaMm2 = 300, kMergedArea = 1.3;
 constexpr double kThickSliceMm = 3, kMergedAreaThick = 2.2;   // thick slices blur a section's size
@@ -184,14 +185,10 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
   // Forwards to the end of the bone.
   std::vector<Vec3> front = line;
   int misses = 0, unsure = 0;   // steps without bone; steps since the last good one
-  bool isAtBorder = false;
   const Vec3 heading = courseOf(front);
   for (int step = 0; step < 60; ++step) {
     const Vec3 course = courseOf(front), expected = front.back() + course * kStepMm;
-    if (!field.contains(expected, 2)) {
-      isAtBorder = true;
-      break;
-    }
+    if (!field.contains(expected, 2)) break;
     const Cut cut = cutAcross(field, expected, course, boneHu, usual);
     const bool isGood = isLikeRib(cut) && dot(course, heading) > kSharpTurn &&
                         distance(cut.centre, expected) < (unsure > 2 ? 1.5 : 2.5);
@@ -202,7 +199,7 @@ MarchedRib marchRib(const std::vector<Vec3>& rough, const Field& field, const Sp
     front.push_back(isGood ? lerp(expected, cut.centre, 0.7) : expected);
   }
   front.resize(front.size() - std::size_t(unsure));
-  rib.reachesJunction = !isAtBorder;
+  rib.reachesJunction = field.contains(front.back(), kBorderMm);
 
   // Backwards to the side of the vertebral body.
   std::vector<Vec3> back(front.rbegin(), front.rend());

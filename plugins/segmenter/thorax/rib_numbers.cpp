@@ -18,8 +18,8 @@ double medianOf(std::vector<double> v) {
 }
 
 double widthOf(const SternumSlice& slice) {
-  const auto [right, left] = std::minmax_element(slice.contour.begin(), slice.contour.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-  return left->x - right->x;
+  const Sides sides = sidesOf(slice.contour);
+  return sides.left - sides.right;
 }
 
 /// Index of the one rib that runs to the notch; -1 if there is none, or more than one may.

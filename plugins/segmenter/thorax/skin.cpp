@@ -1,12 +1,14 @@
 #include "plugins/segmenter/thorax/skin.h"
 
+#include "plugins/segmenter/thorax/surface_metal.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace pectora::thorax {
 namespace {
 
-constexpr float kAirHu = -1000;
+constexpr float kAirHu = -1000, kBrightestHu = 300;   // bone counts as no brighter
 constexpr int kPaddingHu = -1500;    // below: outside the scanner's field of view
 constexpr double kBorderPx = 1.6;
 
@@ -27,7 +29,7 @@ Plane bodySlice(const Volume& ct, const Body& body, int slice) {
     for (int i = 0; i < plane.width; ++i) {
       const int x = std::min(cw - 1, (i + box.low[0]) / f), y = std::min(ch - 1, (j + box.low[1]) / f);
       if (wide[std::size_t(y) * cw + x])
-        plane.at(i, j) = std::clamp<float>(ct.at(i + box.low[0], j + box.low[1], slice), kAirHu, 300);
+        plane.at(i, j) = std::max<float>(ct.at(i + box.low[0], j + box.low[1], slice), kAirHu);
     }
   return plane;
 }
@@ -141,7 +143,9 @@ std::vector<Point2> frontOf(const Loop& outline, double coronalY) {
 
 SkinSlice findSkin(const Volume& ct, const Body& body, int slice, double coronalY, const SkinSettings& settings) {
   const Vec3 spacing = ct.grid.spacing;
-  const Plane raw = bodySlice(ct, body, slice);
+  Plane raw = bodySlice(ct, body, slice);
+  removeSurfaceMetal(raw, spacing, float(settings.levelHu));
+  for (float& hu : raw.value) hu = std::min(hu, kBrightestHu);
   Plane plane = raw;
   smooth(plane, settings.sigmaMm / spacing.x, settings.sigmaMm / spacing.y);
   const Loop torso = torsoOutline(plane, float(settings.levelHu));

@@ -27,7 +27,7 @@ struct SkinSlice {
 };
 
 /// Outline of one slice, cut at the coronal plane y = coronalY (local mm). What is not body (couch, clothes, separate
-/// arms) is replaced by air before; of several pieces the one with the largest area is the torso. `front` is empty where
+/// arms, metal on the skin) is replaced by air before; of several pieces the one with the largest area is the torso. `front` is empty where
 /// the outline does not cross the coronal plane twice.
 SkinSlice findSkin(const Volume& ct, const Body& body, int slice, double coronalY, const SkinSettings& settings);
 

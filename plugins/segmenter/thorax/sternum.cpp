@@ -2,6 +2,7 @@
 
 #include "kernel/physics/workers.h"
 #include "plugins/segmenter/thorax/column_path.h"
+#include "plugins/segmenter/thorax/sternum_outline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,29 +16,16 @@ constexpr double kManubriumHalfMm = 34, kBodyHalfMm = 24, kHalfDepthMm = 20;   /
 constexpr double kMarginMm = 5, kMostDepthMm = 26;  // around what was found there before
 constexpr double kManubriumPart = 0.33;    // of the run's length
 constexpr double kFarthestAsideMm = 12;    // of an end's centroid from the midline
-constexpr double kPieceAsideMm = 18;
 constexpr double kLongestGapMm = 12, kLeastLengthMm = 25;
+constexpr double kWidening = 0.25;       // of a side, upwards between the clavicles
+constexpr double kTouchMm = 4;           // nearer to a wide window's border than this, clavicles and first ribs may touch the outline
+constexpr double kCutMm = 1.4;           // nearer to a window's border than this, an outline is cut off by it
 constexpr double kLeastScore = 0.1;
 constexpr int kCentringRounds = 4;
 
 double medianOf(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
   return v[v.size() / 2];
-}
-
-/// Convex hull (Andrew's monotone chain), positive area.
-Loop convexHull(Loop points) {
-  std::sort(points.begin(), points.end(), [](Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  const auto turn = [](Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
-  Loop hull(2 * points.size());
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < points.size(); hull[n++] = points[i++])
-    while (n >= 2 && turn(hull[n - 2], hull[n - 1], points[i]) <= 0) --n;
-  const std::size_t lower = n + 1;
-  for (std::size_t i = points.size() - 1; i-- > 0; hull[n++] = points[i])
-    while (n >= lower && turn(hull[n - 2], hull[n - 1], points[i]) <= 0) --n;
-  hull.resize(n - 1);
-  return hull;
 }
 
 /// Straight line x(z) that most of the sure slices lie on, within 6 mm, by trying all pairs of 48 of them (the sternum
@@ -76,8 +64,8 @@ Midline midlineOf(const std::vector<SternumSlice>& slices, double sliceSpacing, 
   std::vector<Point2> middles;   // x = height, y = middle
   for (const SternumSlice& s : slices) {
     if (!s.isSeen) continue;
-    const auto [low, high] = std::minmax_element(s.contour.begin(), s.contour.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-    middles.push_back({s.slice * sliceSpacing, 0.5 * (low->x + high->x)});
+    const Sides sides = sidesOf(s.contour);
+    middles.push_back({s.slice * sliceSpacing, 0.5 * (sides.right + sides.left)});
   }
   std::vector<double> slopes, offsets;
   for (std::size_t a = 0; a < middles.size(); ++a)
@@ -89,33 +77,25 @@ Midline midlineOf(const std::vector<SternumSlice>& slices, double sliceSpacing, 
   return {medianOf(offsets), 0, slope};
 }
 
-/// The contour around a point of the midline: hull of the bone in the window; not seen if no bone lies in the middle.
-SternumSlice contourAround(const Field& field, int slice, Vec3 centre, double halfWidth, double halfDepth, double boneHu) {
-  constexpr double kPixel = 0.7;
-  const int hx = int(halfWidth / kPixel), hy = int(halfDepth / kPixel);
-  Plane plane(2 * hx + 1, 2 * hy + 1);
-  for (int j = -hy; j <= hy; ++j)
-    for (int i = -hx; i <= hx; ++i)
-      plane.at(i + hx, j + hy) = field.at(centre + Vec3{i * kPixel, j * kPixel, 0});
-  SternumSlice result;
-  result.slice = slice;
-  Loop all;
-  bool crossesMiddle = false;
-  for (const Loop& loop : isoContours(plane, float(boneHu))) {
-    const Shape shape = shapeOf(loop);
-    const double area = shape.area * kPixel * kPixel, y = (shape.centroid.y - hy) * kPixel;
-    if (area < 12 || std::abs(y) > 12) continue;
-    const auto [low, high] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-    // Pieces whose middle is farther than 18 mm aside are calcified cartilage, or the head of a clavicle.
-    if (std::abs(shape.centroid.x - hx) * kPixel > kPieceAsideMm) continue;
-    crossesMiddle = crossesMiddle || ((low->x - hx) * kPixel < 4 && (high->x - hx) * kPixel > -4);
-    for (Point2 p : loop) all.push_back({centre.x + (p.x - hx) * kPixel, centre.y + (p.y - hy) * kPixel});
+/// Cuts off what goes on beyond the windows' borders (calcified cartilage, a clavicle's head): there the edge runs straight between the
+/// nearest slices above and below that have an edge of their own on that side.
+void cutOffSides(std::vector<SternumSlice>& run, std::vector<SternumWindow> windows, const Field& field, double boneHu) {
+  std::vector<CutSides> cut;
+  for (std::size_t n = 0; n < run.size(); ++n) cut.push_back(cutSides(run[n], windows[n], kCutMm));
+  for (const bool isLeft : {false, true}) {
+    const auto hasEdge = [&](std::size_t n) { return run[n].isSeen && !(isLeft ? cut[n].left : cut[n].right); };
+    const auto edgeOf = [&](std::size_t n) { return isLeft ? sidesOf(run[n].contour).left : sidesOf(run[n].contour).right; };
+    for (std::size_t n = 0; n < run.size(); ++n) {
+      std::size_t below = n, above = n;
+      while (below > 0 && !hasEdge(below)) --below;
+      while (above + 1 < run.size() && !hasEdge(above)) ++above;
+      if (hasEdge(n) || !run[n].isSeen || !hasEdge(below) || !hasEdge(above)) continue;
+      (isLeft ? windows[n].left : windows[n].right) = std::lerp(edgeOf(below), edgeOf(above), double(n - below) / double(above - below));
+    }
   }
-  if (!crossesMiddle) return result;
-  result.contour = convexHull(std::move(all));
-  result.shape = shapeOf(result.contour);
-  result.isSeen = result.shape.area > 25;
-  return result;
+  parallelFor(run.size(), [&](std::size_t n) {
+    if (run[n].isSeen && (cut[n].right || cut[n].left)) run[n] = outlineIn(field, run[n].slice, windows[n], boneHu);
+  });
 }
 
 }  // namespace
@@ -162,25 +142,29 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
   Midline midline = findMidline(at, path.score, spine, first);
   const int near = std::max(1, int(std::lround(5 / sz)));
   std::vector<SternumSlice> slices(count);
+  std::vector<SternumWindow> windows(count);
+  // Where it was seen before, or just below, the window goes around it with a margin.
+  const auto windowAround = [&](int s, const SternumSlice& seen, double halfWidth) {
+    const auto [front, back] = std::minmax_element(seen.contour.begin(), seen.contour.end(), [](Point2 a, Point2 b) { return a.y < b.y; });
+    return SternumWindow{{midline.at(at[s].z), 0.5 * (front->y + back->y), at[s].z}, halfWidth, std::min(0.5 * (back->y - front->y) + kMarginMm, kMostDepthMm),
+                         halfWidth > kBodyHalfMm ? kTouchMm : 0};
+  };
   const auto findContours = [&](int from, int to, double halfWidth) {
     parallelFor(to - from + 1, [&](std::size_t n) {
       const int s = from + int(n);
       const SternumSlice before = std::exchange(slices[s], {});
       slices[s].slice = first + s;
-      // Where it was seen before, the window goes around it with a margin; else around the path's depth nearby.
-      double depth = 0, halfDepth = kHalfDepthMm;
       if (before.isSeen) {
-        const auto [front, back] = std::minmax_element(before.contour.begin(), before.contour.end(), [](Point2 a, Point2 b) { return a.y < b.y; });
-        depth = 0.5 * (front->y + back->y);
-        halfDepth = std::min(0.5 * (back->y - front->y) + kMarginMm, kMostDepthMm);
+        windows[s] = windowAround(s, before, halfWidth);
       } else {
+        // Else around the path's depth nearby.
         std::vector<double> y;
         for (int t = std::max(0, s - near); t <= std::min(count - 1, s + near); ++t)
           if (path.score[t] > kLeastScore && std::abs(at[t].x - midline.at(at[t].z)) < 14) y.push_back(at[t].y);
         if (y.empty()) return;
-        depth = medianOf(y);
+        windows[s] = {{midline.at(at[s].z), medianOf(y), at[s].z}, halfWidth, kHalfDepthMm};
       }
-      slices[s] = contourAround(field, first + s, {midline.at(at[s].z), depth, at[s].z}, halfWidth, halfDepth, boneHu);
+      slices[s] = outlineIn(field, first + s, windows[s], boneHu);
     });
   };
   // The longest run of slices with a contour.
@@ -204,6 +188,16 @@ std::vector<SternumSlice> findSternum(const Body& body, const Field& field, cons
     run.assign(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
     midline = midlineOf(run, sz, midline);
   }
+  // Between the clavicles' heads the path may have strayed to one of them; there the bone goes on from slice to slice, hardly wider.
+  for (int s = bestTo + 1; s < count && slices[s - 1].isSeen; ++s) {
+    windows[s] = windowAround(s, slices[s - 1], kManubriumHalfMm);
+    const Sides below = sidesOf(slices[s - 1].contour);
+    windows[s].right = below.right - kWidening * sz, windows[s].left = below.left + kWidening * sz;
+    slices[s] = outlineIn(field, first + s, windows[s], boneHu);
+    if (slices[s].isSeen) bestTo = s;
+  }
+  run.assign(slices.begin() + bestFrom, slices.begin() + bestTo + 1);
+  cutOffSides(run, {windows.begin() + bestFrom, windows.begin() + bestTo + 1}, field, boneHu);
   // An end that lies aside (a calcified cartilage, a clavicle) is not sternum.
   const auto isEnd = [&](const SternumSlice& slice) {
     return slice.isSeen && std::abs(slice.shape.centroid.x - midline.at(slice.slice * sz)) < kFarthestAsideMm;

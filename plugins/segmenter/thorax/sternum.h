@@ -20,9 +20,10 @@ struct SternumSlice {
 /// spine's: bone in a box of 24 x 10 mm, less the bone before and behind it, in front of the spine and at most 70 mm
 /// below the skin; the midline is the straight line x(z) that most of it lies on. In each slice the contours at `boneHu`
 /// within 24 mm (manubrium: 34 mm) aside and 20 mm before or behind are taken whose middle is at most 18 mm aside (not calcified
-/// cartilage, nor a clavicle's head), and their convex hull. The sternum is the
-/// longest run of slices in which bone crosses the midline, with gaps of up to 12 mm. Empty if there is none longer than
-/// 25 mm.
+/// cartilage, nor a clavicle's head), and their convex hull (outlineIn). The sternum is the longest run of slices in which bone crosses
+/// the midline, with gaps of up to 12 mm; from its upper end it goes on, hardly wider from slice to slice, as long as there is bone:
+/// between the clavicles' heads the path may have strayed to one of them. Where bone goes on beyond a window, the edge runs straight
+/// between the slices above and below in which it does not. Empty if there is none longer than 25 mm.
 std::vector<SternumSlice> findSternum(const Body& body, const Field& field, const Spine& spine, double boneHu);
 
 /// The landmarks, from the slices, in local mm.

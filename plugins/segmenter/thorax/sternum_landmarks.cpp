@@ -16,28 +16,6 @@ double medianOf(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The y of front and back (least and greatest y) of a contour where it crosses the column x; front > back if it does not.
-struct Column {
-  double front = 1e300, back = -1e300;
-};
-Column columnAt(const Loop& contour, double x) {
-  Column column;
-  for (std::size_t n = 0; n < contour.size(); ++n) {
-    const Point2 a = contour[n], b = contour[(n + 1) % contour.size()];
-    if ((a.x > x) == (b.x > x)) continue;
-    const double y = a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
-    column.front = std::min(column.front, y), column.back = std::max(column.back, y);
-  }
-  return column;
-}
-struct Sides {
-  double right, left;
-};
-Sides sidesOf(const Loop& contour) {
-  const auto [right, left] = std::minmax_element(contour.begin(), contour.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-  return {right->x, left->x};
-}
-
 /// Slope dy/dz of the axis by linear regression over entries [a, b].
 double slopeOf(const std::vector<Vec3>& axis, std::size_t a, std::size_t b) {
   const double n = double(b - a + 1);

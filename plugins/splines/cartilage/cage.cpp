@@ -41,12 +41,15 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
   parallelFor(2, [&](std::size_t half) { found[half] = findCourses(kSides[half], cage.ribs, *anatomy, ct, wall, settings, poll); });
 
   // Rib by rib, right before left.
-  std::string missing, guessed;
+  std::string missing, cut, guessed;
   const auto note = [](std::string& list, Side side, int number) { list += fmt::format("{}{} {}", list.empty() ? "" : ", ", sideName(side), number); };
   for (int number = 1; number <= 10; ++number)
     for (int half = 0; half < 2; ++half) {
       const Side side = kSides[half];
-      if (std::count(found[half].missing.begin(), found[half].missing.end(), number)) note(missing, side, number);
+      if (std::count(found[half].missing.begin(), found[half].missing.end(), number)) {
+        const Rib* rib = anatomy->rib(side, number);
+        note(rib && !rib->reachesJunction ? cut : missing, side, number);
+      }
       for (const CartilageCourse& course : found[half].courses) {
         if (course.rib != number) continue;
         if (ct && !course.isSeen) note(guessed, side, number);
@@ -56,6 +59,7 @@ RibCage buildCage(std::shared_ptr<const Anatomy> anatomy, const Volume* ct, cons
       }
     }
   if (!guessed.empty()) warnings.push_back("the cartilage cannot be seen in the CT, its course is a guess: " + guessed);
+  if (!cut.empty()) warnings.push_back("no cartilage was built for rib " + cut + ": its front end lies outside the CT");
   if (!missing.empty())
     warnings.push_back("no cartilage was built for rib " + missing + ": its junction, or what it joins, was not found");
   return cage;

@@ -1,5 +1,5 @@
 #include "plugins/segmenter/thorax/doubts.h"
-#include "quiet_host.h"
+#include "noting_host.h"
 #include "solids.h"
 
 #include "kernel/stage/error.h"
@@ -68,7 +68,7 @@ TEST(FindDoubts, SaysThatSlicesAreThickAndSegmentStopsWhereTheyAreTooThick) {
   const auto ranges = doubtsOf(*water(5));
   ASSERT_EQ(ranges.size(), 1u);
   EXPECT_EQ(ranges[0].what, "thick slices");
-  QuietHost host;
+  NotingHost host;
   try {
     segment(water(12), {}, host);
     FAIL() << "12 mm are too thick";

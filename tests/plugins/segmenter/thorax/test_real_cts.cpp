@@ -79,6 +79,14 @@ TEST_P(RealCt, HasRibsThatLieBelowEachOtherAndAreAsLongAsRibs) {
   }
 }
 
+TEST_P(RealCt, HasNoJunctionWhereTheCtsBorderCutsARib) {
+  const double lowest = anatomy->skin.front().z;
+  for (const Rib& rib : anatomy->ribs)
+    if (rib.centerline.back().z < lowest + 4) {
+      EXPECT_FALSE(rib.reachesJunction) << sideName(rib.side) << rib.number;
+    }
+}
+
 TEST_P(RealCt, HasLayersThatRiseLevelByLevelAndDoNotCrossThemselves) {
   ASSERT_EQ(anatomy->skin.size(), anatomy->pleura.size());
   for (std::size_t n = 0; n < anatomy->skin.size(); ++n) {
@@ -150,6 +158,23 @@ TEST(RealCts, OfAWholeThoraxHasAllTwelvePairsAndSaysWhereTheSkinIsClipped) {
     }
 }
 
+TEST(RealCts, OfAWholeThoraxHasItsManubriumUpToTheNotchBetweenTheClavicles) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // By eye, in slices of 1 mm: it ends at slice 221, clavicles beside it from 208 on.
+  EXPECT_NEAR(anatomy->sternum.jugularNotch.z - anatomy->skin.front().z, 221, 3);
+}
+
+TEST(RealCts, OfAWholeThoraxHasAManubriumWithoutTheOssifiedCartilagesBesideIt) {
+  const auto anatomy = anatomyOf("lidc_0314");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
+  // By eye it is 52 to 58 mm wide where the first ribs' ossified cartilages touch it; with what they add, 68 and more.
+  for (const std::vector<Vec3>& contour : anatomy->sternum.contours) {
+    const auto [right, left] = std::minmax_element(contour.begin(), contour.end(), [](Vec3 a, Vec3 b) { return a.x < b.x; });
+    EXPECT_LT(left->x - right->x, 63) << "at slice " << contour.front().z - anatomy->skin.front().z;
+  }
+}
+
 TEST(RealCts, OfAWholeThoraxHasRibsOfALengthOnBothSides) {
   const auto anatomy = anatomyOf("lidc_0314");
   if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/lidc_0314";
@@ -179,6 +204,24 @@ TEST(RealCts, OfAWholeThoraxHasAThinWallWhereNoLungShowsItBelowTheDiaphragm) {
     }
   }
   EXPECT_GT(levels, 10);
+}
+
+TEST(RealCts, OfLowerRibsHaveAWallBehindTheFrontsOfRibsThatBeginAboveThem) {
+  const auto anatomy = anatomyOf("cptac_c3l00189");
+  if (!anatomy) GTEST_SKIP() << "PECTORA_DATA has no folder ct/cptac_c3l00189";
+  // By eye: in slices 29 to 32 (of 5 mm) the inner wall crosses y = -67 on the left at x = 55 to 66, behind the sixth rib's front, which
+  // cannot be tracked since its back is not in view; a wall that only follows the skin of the breast lies at 79.
+  int levels = 0;
+  for (const LayerSlice& pleura : anatomy->pleura) {
+    if (pleura.z < -35 || pleura.z > -17) continue;
+    for (std::size_t n = 1; n < pleura.points.size(); ++n) {
+      const Vec3 a = pleura.points[n - 1], b = pleura.points[n];
+      if ((a.y < -67) == (b.y < -67) || a.x < 0) continue;
+      EXPECT_NEAR(a.x, 60, 10) << "at z " << pleura.z;
+      ++levels;
+    }
+  }
+  EXPECT_EQ(levels, 4);
 }
 
 TEST(RealCts, ThatShowTheAngleOfLouisButNeitherTheFirstNorTheLastRibAreCountedFromTheSecond) {

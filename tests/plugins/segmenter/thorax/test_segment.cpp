@@ -1,6 +1,6 @@
 // The whole way, against the phantom's truth and against bad input.
 #include "phantom.h"
-#include "quiet_host.h"
+#include "noting_host.h"
 #include "solids.h"
 
 #include "kernel/physics/workers.h"
@@ -32,7 +32,7 @@ const Case& phantomCase() {
 }
 std::shared_ptr<const Anatomy> segmented() {
   static const auto made = [] {
-    QuietHost host;
+    NotingHost host;
     return thorax::segment(phantomCase().ct, {}, host);
   }();
   return made;
@@ -140,7 +140,7 @@ TEST(Segment, KeepsThePleuraInsideTheSkin) {
 TEST(Segment, GivesTheSameBitsForAnyNumberOfThreads) {
   const int before = threads();
   setThreads(1);
-  QuietHost host;
+  NotingHost host;
   const auto one = thorax::segment(phantomCase().ct, {}, host);
   setThreads(before);
   const auto many = segmented();
@@ -164,7 +164,7 @@ TEST(Segment, DoesNotDependOnHowTheVoxelsAreStored) {
   for (int k = 0; k < ct.grid.size[2]; ++k)
     for (int j = ct.grid.size[1] - 1; j >= 0; --j)
       for (int i = ct.grid.size[0] - 1; i >= 0; --i) turned->hu.push_back(ct.at(i, j, k));
-  QuietHost host;
+  NotingHost host;
   const auto found = thorax::segment(turned, {}, host);
   ASSERT_EQ(found->ribs.size(), segmented()->ribs.size());
   for (std::size_t r = 0; r < found->ribs.size(); ++r)
@@ -178,7 +178,7 @@ TEST(Segment, WarnsIfTheFirstRibIsNotInView) {
   part->grid = ct.grid;
   part->grid.size[2] = ct.grid.size[2] * 6 / 10;
   part->hu.assign(ct.hu.begin(), ct.hu.begin() + std::ptrdiff_t(part->grid.voxels()));
-  QuietHost host;
+  NotingHost host;
   const auto found = thorax::segment(part, {}, host);
   EXPECT_TRUE(host.warned("rib"));
   for (const Rib& rib : found->ribs) {
@@ -191,7 +191,7 @@ TEST(Segment, WarnsIfTheFirstRibIsNotInView) {
 }
 
 TEST(Segment, RefusesCtsThatHoldNoChestWithOneClearError) {
-  QuietHost host;
+  NotingHost host;
   const auto refused = [&](std::shared_ptr<Volume> ct) {
     EXPECT_THROW(thorax::segment(ct, {}, host), Error);
   };
@@ -211,7 +211,7 @@ TEST(Segment, RefusesCtsThatHoldNoChestWithOneClearError) {
 }
 
 TEST(Segment, StopsWhenTheUserCancels) {
-  QuietHost host;
+  NotingHost host;
   host.isCancelled = true;
   EXPECT_THROW(thorax::segment(phantomCase().ct, {}, host), Cancelled);
 }

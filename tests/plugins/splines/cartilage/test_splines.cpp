@@ -91,14 +91,16 @@ TEST(BuildCage, JoinsTrueRibsToTheSternumAndFalseOnesToTheArch) {
   EXPECT_LT(distance(cage.cartilages[4].curve.at(1), cage.cartilages[3].curve.at(0.6)), 1e-9);
 }
 
-TEST(BuildCage, SaysWhichCartilagesCouldNotBeBuilt) {
+TEST(BuildCage, SaysWhichCartilagesCouldNotBeBuiltAndWhoseRibsEndOutsideTheCt) {
   auto anatomy = halfCage();
   anatomy->ribs[1].reachesJunction = false;  // rib 5
   std::vector<std::string> warnings;
   const RibCage cage = buildCage(anatomy, nullptr, {}, warnings);
   EXPECT_EQ(cage.cartilages.size(), 5u);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("left 5"), std::string::npos) << warnings[0];
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("left 5: its front end lies outside the CT"), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[1].find("left 5"), std::string::npos) << warnings[1];
+  EXPECT_NE(warnings[1].find("left 1"), std::string::npos) << warnings[1];
 }
 
 TEST(BuildCage, LetsCartilagesFollowThePitThatThePleuraShows) {
