@@ -1,5 +1,6 @@
 // scripts/compare.lua, as somebody with two surfaces runs it.
 #include "tests/bench/surfaces/chest_fields.h"
+#include "tests/scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ void writeObj(const Mesh& mesh, const fs::path& path) {
 }  // namespace
 
 TEST(CompareScript, RegistersTwoSurfacesByLandmarksAndIcpAndPrintsTheTable) {
-  const fs::path folder = fs::temp_directory_path() / "pectora_test_compare";
+  const fs::path folder = scratch("compare");
   fs::remove_all(folder);
   fs::create_directories(folder);
   writeObj(reference(101), folder / "before.obj");

@@ -1,4 +1,6 @@
 // The studies of solvers and of accuracy, as a user runs them, in their small form.
+#include "tests/scratch.h"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -16,7 +18,7 @@ struct Ended {
 };
 
 Ended run(const std::string& script, const std::string& arguments) {
-  const fs::path out = fs::temp_directory_path() / ("pectora_test_" + fs::path(script).stem().string() + ".txt");
+  const fs::path out = pectora::scratch(fs::path(script).stem().string() + ".txt");
   const std::string command = std::string(PECTORA_PROGRAM) + " run " + PECTORA_SOURCE + "/" + script + " " + arguments + " > " + out.string() + " 2> /dev/null";
   Ended result;
   result.code = std::system(command.c_str());
@@ -42,7 +44,7 @@ TEST(SwapScript, BringsEverySolverToRest) {
 }
 
 TEST(SwingScript, TellsTheWayInTimeAndWritesIt) {
-  const fs::path out = fs::temp_directory_path() / "pectora_test_swing";
+  const fs::path out = pectora::scratch("swing");
   fs::remove_all(out);
   const Ended swing = run("scripts/swing.lua", "matrix=128 lift=15 spacing=16 duration=0.1 lifting=0.05 out=" + out.string());
   EXPECT_EQ(swing.code, 0) << swing.text;
@@ -62,7 +64,7 @@ TEST(SwingScript, TellsTheWayInTimeAndWritesIt) {
 }
 
 TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
-  const fs::path out = fs::temp_directory_path() / "pectora_test_accuracy";
+  const fs::path out = pectora::scratch("accuracy");
   fs::remove_all(out);
   const Ended study = run("scripts/accuracy.lua", "quick=true runs=1 out=" + out.string());
   EXPECT_EQ(study.code, 0) << study.text;
@@ -75,7 +77,7 @@ TEST(AccuracyScript, WritesTheTableAndThePicturesOfEverySolver) {
 }
 
 TEST(AnatomyStudy, WritesTableAndPicture) {
-  const fs::path out = fs::temp_directory_path() / "pectora_test_anatomy_study";
+  const fs::path out = pectora::scratch("anatomy_study");
   fs::remove_all(out);
   const Ended study = run("scripts/anatomy_study.lua", "matrix=192 only=cup_4 out=" + out.string());
   EXPECT_EQ(study.code, 0) << study.text;

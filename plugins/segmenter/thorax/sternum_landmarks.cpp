@@ -117,8 +117,8 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
   double levels = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t k = std::max(joint, deepest > reach ? deepest - reach : 0); k <= std::min(xiphoid, deepest + reach); ++k) {
     if (!slices[k].isSeen) continue;
-    const double from = double(k) - double(deepest), angle = sectionTorsion(sternum.contours[k]) - turnDeg;
-    levels += 1, x += from, y += angle, xx += from * from, xy += from * angle;
+    const double away = double(k) - double(deepest), angle = sectionTorsion(sternum.contours[k]) - turnDeg;
+    levels += 1, x += away, y += angle, xx += away * away, xy += away * angle;
   }
   // The regression line's value at the deepest level.
   const double square = levels * xx - x * x;
@@ -132,8 +132,8 @@ Sternum measureSternum(const std::vector<SternumSlice>& slices, double sliceSpac
     const Sides sides = sidesOf(slices[n].contour);
     const double slope = std::tan(sectionTorsion(sternum.contours[n]) / kDegrees);
     for (Side side : {Side::right, Side::left}) {
-      const double x = side == Side::right ? sides.right : sides.left;
-      sternum.notches.push_back({side, rib, {x, slices[n].shape.centroid.y + slope * (x - slices[n].shape.centroid.x), sternum.axis[n].z}});
+      const double edge = side == Side::right ? sides.right : sides.left;
+      sternum.notches.push_back({side, rib, {edge, slices[n].shape.centroid.y + slope * (edge - slices[n].shape.centroid.x), sternum.axis[n].z}});
     }
   }
   return sternum;

@@ -1,4 +1,6 @@
 // Corrections as a script makes them, and what the summary keeps of them.
+#include "tests/scratch.h"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -29,7 +31,7 @@ std::string logOf(const fs::path& folder, const std::string& script) {
 }  // namespace
 
 TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
-  const fs::path folder = fs::temp_directory_path() / "pectora_test_correct";
+  const fs::path folder = pectora::scratch("correct");
   const std::string log = logOf(folder, R"(
     local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }
     local anatomy = segmenter.thorax(ct, { bone_regions = { -200, -200, -330, 200, 200, -320, 150 } })
@@ -49,7 +51,7 @@ TEST(Corrections, FromAScriptChangeTheAnatomyAndStandInTheProvenance) {
 }
 
 TEST(Corrections, AThresholdOfItsOwnInABoxDecidesWhatIsBoneThere) {
-  const fs::path folder = fs::temp_directory_path() / "pectora_test_bone_regions";
+  const fs::path folder = pectora::scratch("bone_regions");
   // Nothing to the patient's left is as dense as 3000 HU.
   const std::string log = logOf(folder, R"(
     local ct = loader.phantom{ matrix = 128, slice_spacing = 5, coverage = "thorax" }

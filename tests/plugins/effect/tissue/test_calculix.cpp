@@ -1,5 +1,6 @@
 // The solid against CalculiX on the same mesh.
 #include "tests/plugins/effect/common/slab.h"
+#include "tests/scratch.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ void compare(double nu, double bump, bool isFinite) {
   if (std::string(PECTORA_CCX).empty()) GTEST_SKIP() << "CalculiX (ccx) is not installed";
   const Slab slab(24, 4, nu, bump);
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::vector<Vec3> theirs = solveByCalculix(PECTORA_CCX, slab, "C3D8I", isFinite, std::filesystem::temp_directory_path() / ("pectora_ccx_" + test));
+  const std::vector<Vec3> theirs = solveByCalculix(PECTORA_CCX, slab, "C3D8I", isFinite, scratch(test));
   const std::vector<Vec3> ours = solveHere(slab, 1e-7);
   EXPECT_LT(difference(ours, theirs, bump), 0.01);
 }

@@ -31,7 +31,9 @@ TEST(RemoveSurfaceMetal, TakesAWireOffTheSkin) {
   // Grown by one pixel it takes one of skin with it.
   for (int j = 0; j < 121; ++j)
     for (int i = 0; i < 121; ++i)
-      if (j > 60 - kRadius + 1 || std::abs(i - 60) > 9) EXPECT_EQ(plane.at(i, j), bare.at(i, j)) << i << ", " << j;
+      if (j > 60 - kRadius + 1 || std::abs(i - 60) > 9) {
+        EXPECT_EQ(plane.at(i, j), bare.at(i, j)) << i << ", " << j;
+      }
   for (int j = 0; j < 60 - kRadius; ++j) EXPECT_EQ(plane.at(60, j), kAir);
 }
 
