@@ -173,6 +173,24 @@ TEST(LatticeTerm, RoughForcesAreThoseOfSinglePrecisionEvenFarFromTheOrigin) {
   }
 }
 
+TEST(LatticeTerm, RoughForcesAreRightOnWallsOfAnyShapeAndForSpringsOfAnyReach) {
+  std::vector<StencilSpring> wide = someStencil();
+  // Longer than the registers are wide, from the pleura, and more rows than some walls have.
+  wide.insert(wide.end(), {{Layer::outer, Layer::outer, 0, 19, 0.2}, {Layer::outer, Layer::inner, 3, -18, 0.1}, {Layer::inner, Layer::inner, 1, -1, 0.3},
+                           {Layer::inner, Layer::outer, -4, 2, 0.2}, {Layer::outer, Layer::inner, 9, 0, 0.1}});
+  for (const auto& [rows, columns] : {std::pair{1, 40}, {30, 1}, {3, 3}, {7, 16}, {12, 17}, {26, 64}}) {
+    const System system = crookedGrid(rows, columns, 0);
+    const auto term = makeLatticeTerm("lattice", system, wide);
+    const NodeVectors x = perturbed(system, 2, 5);
+    NodeVectors exact(x.size()), rough(x.size());
+    double largest = 0, largestRough = 0;
+    const double energy = term->evaluate(x, exact, largest);
+    EXPECT_NEAR(term->evaluateRoughly(x, rough, largestRough), energy, 1e-5 * energy);
+    EXPECT_NEAR(largestRough, largest, 1e-5 * largest);
+    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT(distance(rough[i], exact[i]), 1e-5 * largest) << rows << " x " << columns << ", " << i;
+  }
+}
+
 TEST(LatticeTerm, RoughForcesAreTheExactOnesWhereASpringHasNoLength) {
   const System system = crookedGrid(5, 6, 0);
   const auto term = makeLatticeTerm("lattice", system, someStencil());
