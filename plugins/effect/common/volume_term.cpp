@@ -47,7 +47,7 @@ class VolumeTerm final : public Term {
           throw Error("a cell of the wall has no positive volume at rest, or is folded")
               .given(fmt::format("{:.3g} mm^3 at one of its points", least / kPoints))
               .at(fmt::format("the cell inward of layer {}, row {}, column {}", point / (rows * columns), point / columns % rows, point % columns))
-              .advise("Use a wider spacing of the model, or fewer cells through the wall");
+              .advise("Use a wider spacing of the model, or leave effect.volume out of the scene");
         }
         rest_.stiffness[p.cell + i] = bulk / rest_.volume[p.cell + i];
       }
