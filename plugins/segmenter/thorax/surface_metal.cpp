@@ -51,10 +51,15 @@ void removeSurfaceMetal(Plane& plane, Vec3 spacing, float levelHu) {
   const double reachX = kShallowMm / spacing.x, reachY = kShallowMm / spacing.y;
   std::vector<char> isSeen(plane.value.size(), 0);
   std::vector<std::vector<int>> pieces;
-  for (int n : outside)
+  for (int n : outside) {
+    // What is close to air is close to its rim.
+    bool isRim = false;
+    around(n, 1, 1, w, h, [&](int m) { isRim = isRim || !isOutside[m]; });
+    if (!isRim) continue;
     around(n, reachX, reachY, w, h, [&](int m) {
       if (!isSeen[m] && isMetal(m)) pieces.push_back(reach({m}, isSeen, w, h, isMetal));
     });
+  }
   for (const std::vector<int>& piece : pieces) {
     const bool isBright = std::any_of(piece.begin(), piece.end(), [&](int n) { return plane.value[n] > kBrightestHu; });
     if (isBright && double(piece.size()) * spacing.x * spacing.y <= kLargestMm2)
