@@ -136,7 +136,7 @@ class LatticeTerm final : public Term {
   // Returns false, and has done nothing, where a spring has no direction or a number is not finite.
   bool evaluateBlockRoughly(const NodeVectors& positions, int begin, int end, NodeVectors& gradient, BlockSums& sums) const {
     const std::size_t columns = grid_.columns();
-    const Grid::Rows rows = grid_.reached(begin, end);
+    const Grid::Range rows = grid_.reached(begin, end);
     thread_local Room room;
     room.setSize(std::size_t(rows.end - rows.first), columns, beyond_);
     forEachRow(rows, [&](Layer layer, int row, std::size_t node) {
@@ -153,7 +153,7 @@ class LatticeTerm final : public Term {
       for (const Layer layer : {Layer::outer, Layer::inner}) {
         entries.clear();
         for (const StencilSpring& s : aside_) {
-          const std::ptrdiff_t first = std::max(0, -s.columns), last = std::ptrdiff_t(columns) - std::max(0, s.columns);
+          const auto [first, last] = grid_.startsOf(s);
           if (s.from != layer || row + s.rows < rows.first || row + s.rows >= rows.end || first >= last) continue;
           const std::ptrdiff_t far = std::ptrdiff_t(room.place(s.to, row + s.rows - rows.first)) - std::ptrdiff_t(room.place(layer, row - rows.first)) + s.columns;
           entries.push_back({far, first, last, float(s.stiffnessNPerMm), float(s.stiffnessNPerMm * s.compression)});
@@ -178,7 +178,7 @@ class LatticeTerm final : public Term {
 
   // Calls f(layer, row, its first node) for skin and pleura.
   template <class F>
-  void forEachRow(Grid::Rows rows, F&& f) const {
+  void forEachRow(Grid::Range rows, F&& f) const {
     for (const Layer layer : {Layer::outer, Layer::inner})
       for (int row = rows.first; row < rows.end; ++row) f(layer, row, grid_.node(layer, row, 0));
   }

@@ -35,16 +35,19 @@ class Grid {
   };
   Run run(int row, std::size_t entry) const {
     const StencilSpring& s = stencil_[entry];
-    const int other = row + s.rows, first = std::max(0, -s.columns), end = std::min(columns_, columns_ - s.columns);
+    const int other = row + s.rows;
+    const auto [first, end] = startsOf(s);
     if (other < 0 || other >= rows_ || first >= end) return {0, 0, 0, 0};
     return {node(s.from, row, first), node(s.to, other, first + s.columns), std::size_t(end - first), std::size_t(first)};
   }
 
-  /// The rows that springs which start in rows [begin, end) reach.
-  struct Rows {
+  struct Range {
     int first, end;
   };
-  Rows reached(int begin, int end) const { return {std::max(0, begin - reach_), std::min(rows_, end + reach_)}; }
+  /// The columns in which springs of a stencil entry start; empty if none does.
+  Range startsOf(const StencilSpring& s) const { return {std::max(0, -s.columns), std::min(columns_, columns_ - s.columns)}; }
+  /// The rows that springs which start in rows [begin, end) reach.
+  Range reached(int begin, int end) const { return {std::max(0, begin - reach_), std::min(rows_, end + reach_)}; }
 
   /// Calls f(block, first row, end row) for every block, at most one of two neighbours at a time.
   template <class F>

@@ -19,7 +19,8 @@ RowSprings<float> LatticeHessian::springs(const Grid::Run& r, std::size_t entry)
 
 bool LatticeHessian::isDegenerate(const Grid::Run& r, std::size_t i) const {
   // In the same steps as the rows do it.
-  const float x0 = rest_.single.x[r.far + i] - rest_.single.x[r.near + i], y0 = rest_.single.y[r.far + i] - rest_.single.y[r.near + i], z0 = rest_.single.z[r.far + i] - rest_.single.z[r.near + i];
+  const SingleVectors& rest = rest_.single;
+  const float x0 = rest.x[r.far + i] - rest.x[r.near + i], y0 = rest.y[r.far + i] - rest.y[r.near + i], z0 = rest.z[r.far + i] - rest.z[r.near + i];
   const float x = x0 + (moved_.x[r.far + i] - moved_.x[r.near + i]), y = y0 + (moved_.y[r.far + i] - moved_.y[r.near + i]),
               z = z0 + (moved_.z[r.far + i] - moved_.z[r.near + i]);
   return x * x + y * y + z * z <= kDegenerateSingle * kDegenerateSingle * (x0 * x0 + y0 * y0 + z0 * z0);

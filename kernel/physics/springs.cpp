@@ -203,7 +203,7 @@ class SpringHessian final : public Hessian {
       for (std::size_t i = begin; i < end; ++i) curvatures_[i] = term_.curvature(i, positions, projected);
     });
     constexpr std::size_t kPiece = 4096;
-    pectora::forEachPiece(heldNodes_.size(), kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
+    forEachPiece(heldNodes_.size(), kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         heldBlocks_[n] = {};
         for (std::size_t i = firstSpring_[n]; i < firstSpring_[n + 1]; ++i) heldBlocks_[n] += block(i);

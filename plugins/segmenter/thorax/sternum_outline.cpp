@@ -43,8 +43,8 @@ Pieces piecesIn(const Plane& plane, double level) {
     for (Point2& p : loop) p = {(p.x - hx) * kPixelMm, (p.y - hy) * kPixelMm};
     const Shape shape = shapeOf(loop);
     if (shape.area < kLeastPieceMm2 || std::abs(shape.centroid.x) > kPieceAsideMm || std::abs(shape.centroid.y) > kPieceDeepMm) continue;
-    const auto [low, high] = std::minmax_element(loop.begin(), loop.end(), [](Point2 a, Point2 b) { return a.x < b.x; });
-    pieces.crossesMiddle = pieces.crossesMiddle || (low->x < kAcrossMm && high->x > -kAcrossMm);
+    const Sides sides = sidesOf(loop);
+    pieces.crossesMiddle = pieces.crossesMiddle || (sides.right < kAcrossMm && sides.left > -kAcrossMm);
     const Column here = columnAt(loop, 0);
     pieces.middle = {std::min(pieces.middle.front, here.front), std::max(pieces.middle.back, here.back)};
     pieces.area += shape.area;

@@ -27,12 +27,12 @@ std::vector<int> reach(std::vector<int> pixels, std::vector<char>& isSeen, int w
   return pixels;
 }
 
-/// Calls f(pixel) for all pixels within a distance of one.
+/// Calls f(pixel) for all pixels at most so many columns and rows from one, and itself.
 template <class F>
-void around(int n, double reachX, double reachY, int width, int height, F&& f) {
+void around(int n, int columns, int rows, int width, int height, F&& f) {
   const int i = n % width, j = n / width;
-  for (int y = std::max(0, j - int(reachY)); y <= std::min(height - 1, j + int(reachY)); ++y)
-    for (int x = std::max(0, i - int(reachX)); x <= std::min(width - 1, i + int(reachX)); ++x) f(y * width + x);
+  for (int y = std::max(0, j - rows); y <= std::min(height - 1, j + rows); ++y)
+    for (int x = std::max(0, i - columns); x <= std::min(width - 1, i + columns); ++x) f(y * width + x);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void removeSurfaceMetal(Plane& plane, Vec3 spacing, float levelHu) {
   const std::vector<int> outside = reach(std::move(border), isOutside, w, h, isDark);
 
   // Bright pixels close to the air outside, each with the piece that it belongs to.
-  const double reachX = kShallowMm / spacing.x, reachY = kShallowMm / spacing.y;
+  const int columns = int(kShallowMm / spacing.x), rows = int(kShallowMm / spacing.y);
   std::vector<char> isSeen(plane.value.size(), 0);
   std::vector<std::vector<int>> pieces;
   for (int n : outside) {
@@ -56,7 +56,7 @@ void removeSurfaceMetal(Plane& plane, Vec3 spacing, float levelHu) {
     bool isRim = false;
     around(n, 1, 1, w, h, [&](int m) { isRim = isRim || !isOutside[m]; });
     if (!isRim) continue;
-    around(n, reachX, reachY, w, h, [&](int m) {
+    around(n, columns, rows, w, h, [&](int m) {
       if (!isSeen[m] && isMetal(m)) pieces.push_back(reach({m}, isSeen, w, h, isMetal));
     });
   }

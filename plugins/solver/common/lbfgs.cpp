@@ -97,8 +97,7 @@ void Lbfgs::remember(double step, const NodeVectors& gradientBefore, const NodeV
 Outcome Lbfgs::minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) {
   const System& system = objective.system();
   const std::size_t free = system.freeNodes;
-  Trial trial;
-  trial.place = x;
+  Trial trial(x);
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
   if (const std::size_t nodes = std::max(free, system.anchorNode(0)); single_.size() != nodes) single_ = direction_ = metricGradient_ = SingleVectors(nodes);

@@ -65,8 +65,7 @@ void Newton::predict(const Objective& objective, const NodeVectors& x, NodeVecto
 
 Outcome Newton::minimise(const Objective& objective, NodeVectors& x, Evaluation& e, Limits limits, int& iterations, const Watch& watch) {
   const std::size_t free = objective.system().freeNodes;
-  Trial trial;
-  trial.place = x;
+  Trial trial(x);
   objective.evaluate(x, e);
   if (!std::isfinite(e.value) || !std::isfinite(e.residual.force)) return Outcome::diverged;
   const double firstNorm = std::sqrt(dot(e.gradient, e.gradient, free));

@@ -73,6 +73,7 @@ class Minimiser {
 
 /// Room for what is tried; `place` holds the driven nodes where they are.
 struct Trial {
+  explicit Trial(const NodeVectors& x) : place(x) {}
   Evaluation evaluation;
   NodeVectors place;
 };
