@@ -48,12 +48,13 @@ PECTORA_WIDE double roughDot(const float* a, const float* b, std::size_t count) 
 
 // to = x + s v.
 template <class X, class V, class To>
-PECTORA_INLINE void addOf(const X* x, To s, const V* v, To* to, std::size_t count) {
+PECTORA_INLINE void addOf(const X* x, X s, const V* v, To* to, std::size_t count) {
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) to[i] = To(x[i]) + s * To(v[i]);
+  for (std::size_t i = 0; i < count; ++i) to[i] = To(x[i] + s * X(v[i]));
 }
 PECTORA_WIDE void add(const double* x, double s, const double* v, double* to, std::size_t count) { addOf(x, s, v, to, count); }
 PECTORA_WIDE void add(const double* x, double s, const float* v, double* to, std::size_t count) { addOf(x, s, v, to, count); }
+PECTORA_WIDE void add(const double* x, double s, const double* v, float* to, std::size_t count) { addOf(x, s, v, to, count); }
 PECTORA_WIDE void add(const float* x, float s, const float* v, float* to, std::size_t count) { addOf(x, s, v, to, count); }
 
 PECTORA_WIDE void scale(float s, const float* v, float* to, std::size_t count) {
@@ -91,7 +92,7 @@ std::vector<double> dots(const std::vector<const SingleVectors*>& vs, const Sing
 
 template <class X, class V, class To>
 void setSum(const X& x, double s, const V& v, To& to, std::size_t count) {
-  using Number = typename decltype(to.x)::value_type;
+  using Number = typename decltype(x.x)::value_type;
   forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {
     add(&x.x[begin], Number(s), &v.x[begin], &to.x[begin], end - begin);
     add(&x.y[begin], Number(s), &v.y[begin], &to.y[begin], end - begin);
@@ -101,6 +102,7 @@ void setSum(const X& x, double s, const V& v, To& to, std::size_t count) {
 template void setSum(const NodeVectors&, double, const NodeVectors&, NodeVectors&, std::size_t);
 template void setSum(const NodeVectors&, double, const SingleVectors&, NodeVectors&, std::size_t);
 template void setSum(const SingleVectors&, double, const SingleVectors&, SingleVectors&, std::size_t);
+template void setSum(const NodeVectors&, double, const NodeVectors&, SingleVectors&, std::size_t);
 
 void setSum(const std::vector<Scaled>& terms, SingleVectors& to, std::size_t count) {
   forEachPiece(count, kPiece, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -2,6 +2,7 @@
 
 #include "plugins/solver/common/movement.h"
 #include "plugins/solver/common/newton.h"
+#include "plugins/solver/common/secant.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +36,9 @@ class QuasiStatic final : public Session {
 
   void takeOver(Session& before) override {
     auto* other = dynamic_cast<QuasiStatic*>(&before);
-    if (other && acceleration_.metric && other->acceleration_.metric) acceleration_.metric->takeOver(*other->acceleration_.metric);
+    if (!other) return;
+    secant_ = std::move(other->secant_);
+    if (acceleration_.metric && other->acceleration_.metric) acceleration_.metric->takeOver(*other->acceleration_.metric);
   }
 
   Solution solve(const Drive& drive, const NodeVectors* start, Host& host) override {
@@ -51,6 +54,8 @@ class QuasiStatic final : public Session {
       objective_.setPrecision(Precision::full);
       objective_.evaluate(solution.positions, end_);
     }
+    if (!acceleration_.predictsFromStart && solution.status == SolveStatus::converged)
+      secant_.remember(start ? *start : system_.rest, solution.positions, system_.freeNodes);
     solution.forceEvaluations = objective_.evaluations() - before;
     solution.residual = end_.residual.force;
     solution.relativeResidual = end_.relativeResidual();
@@ -76,7 +81,9 @@ class QuasiStatic final : public Session {
       const NodeVectors& from = t == 0 ? movement.beginning() : x;
       NodeVectors trial = from;
       movement.apply(next, trial);
-      if (isPredicted_ && (!movement.isFromStart() || acceleration_.predictsFromStart)) {
+      if (movement.isFromStart() && !acceleration_.predictsFromStart) {
+        secant_.follow(from, trial, system_.freeNodes);
+      } else if (isPredicted_) {
         if (!predictor_) predictor_ = std::make_unique<Newton>(system_, acceleration_.metric);
         predictor_->predict(objective_, from, trial, acceleration_.forcing, [&] { host.checkCancel(); });
       }
@@ -154,6 +161,7 @@ class QuasiStatic final : public Session {
 
   const System& system_;
   Objective objective_;
+  Secant secant_;
   Evaluation end_;   // of the objective where the last minimisation ended
   QuasiStaticSettings settings_;
   std::unique_ptr<Minimiser> minimiser_;

@@ -19,7 +19,8 @@ struct QuasiStaticSettings {
 struct Acceleration {
   std::shared_ptr<Metric> metric;   ///< for the linear answer
   double forcing = 1e-2;            ///< the error of the linear answer, as a part of it
-  bool predictsFromStart = true;    ///< also from a given start, where no path is judged by it: false if a step of the minimiser costs less
+  bool predictsFromStart = true;    ///< also from a given start, where no path is judged by it: false if a step of the minimiser costs less; then
+                                    ///< the wall goes on as it did the last time
   double accuracy = 0;              ///< see Minimiser::Limits
 };
 

@@ -1,7 +1,5 @@
 #include "plugins/solver/multigrid/coarsening.h"
 
-#include "kernel/physics/workers.h"
-
 #include <algorithm>
 
 namespace pectora {
@@ -38,7 +36,7 @@ int halfDown(int i) { return i >= 0 ? i / 2 : -((1 - i) / 2); }
 GridShape coarser(GridShape fine) { return {fine.layers, coarserCount(fine.rows), coarserCount(fine.columns)}; }
 
 void restrict(GridShape fineShape, const SingleVectors& fine, GridShape shape, SingleVectors& coarse) {
-  parallelFor(std::size_t(shape.layers) * shape.rows, [&](std::size_t line) {
+  forEachLine(shape, [&](std::size_t line) {
     const int l = int(line) / shape.rows, r = int(line) % shape.rows;
     for (auto v : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {
       float* out = &(coarse.*v)[shape.number(l, r, 0)];
@@ -63,7 +61,7 @@ void restrict(GridShape fineShape, const SingleVectors& fine, GridShape shape, S
 }
 
 void prolongate(GridShape shape, const SingleVectors& coarse, GridShape fineShape, SingleVectors& fine) {
-  parallelFor(std::size_t(fineShape.layers) * fineShape.rows, [&](std::size_t line) {
+  forEachLine(fineShape, [&](std::size_t line) {
     const int l = int(line) / fineShape.rows, r = int(line) % fineShape.rows;
     const Parents rows = parentsOf(r, fineShape.rows, shape.rows);
     for (auto v : {&SingleVectors::x, &SingleVectors::y, &SingleVectors::z}) {

@@ -1,13 +1,17 @@
 #include "plugins/solver/multigrid/grid_matrix.h"
 
-#include "kernel/physics/workers.h"
-
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>
 #include <utility>
 
 namespace pectora {
+namespace {
+
+// Fewer points than this are not worth a second thread.
+constexpr int kBlockPoints = 1024;
+
+}  // namespace
 
 GridMatrix::GridMatrix(GridShape shape)
     : shape_(shape), diagonal_(std::size_t(shape.layers), std::vector<float>(6 * std::size_t(shape.rows) * shape.columns)), inverse_(diagonal_),
@@ -52,7 +56,7 @@ void GridMatrix::add(GridPoint a, GridPoint b, std::size_t count, const float* c
 
 void GridMatrix::addDiagonal(const std::vector<Symmetric3>& blocks) {
   const std::size_t stride = std::size_t(shape_.columns);
-  parallelFor(std::size_t(shape_.layers) * shape_.rows, [&](std::size_t line) {
+  forEachLine(shape_, [&](std::size_t line) {
     const int l = int(line) / shape_.rows, r = int(line) % shape_.rows;
     float* d = &diagonal_[std::size_t(l)][place(r, 0, 6)];
     for (std::size_t c = 0; c < stride; ++c) {
@@ -68,7 +72,7 @@ void GridMatrix::finish() {
   const auto order = [](const Offset& o) { return std::tuple(o.rows, o.columns, o.layer, o.otherLayer); };
   std::sort(offsets_.begin(), offsets_.end(), [&](const auto& a, const auto& b) { return order(*a) < order(*b); });
   const std::size_t stride = std::size_t(shape_.columns);
-  parallelFor(std::size_t(shape_.layers) * shape_.rows, [&](std::size_t line) {
+  forEachLine(shape_, [&](std::size_t line) {
     const std::size_t l = line / std::size_t(shape_.rows);
     for (int c = 0; c < shape_.columns; ++c) {
       const std::size_t first = place(int(line) % shape_.rows, c, 6);
@@ -92,7 +96,7 @@ template <class F>
 void GridMatrix::forEachRowBlock(F&& f) const {
   int reach = 0;
   for (const auto& o : offsets_) reach = std::max(reach, o->rows);
-  const int rows = std::max(8, reach + 2);
+  const int rows = std::max({8, reach + 2, kBlockPoints / (shape_.layers * shape_.columns)});
   const std::size_t blocks = std::size_t((shape_.rows + rows - 1) / rows);
   for (std::size_t parity = 0; parity < 2; ++parity)
     parallelFor((blocks + 1 - parity) / 2, [&](std::size_t i) {
@@ -110,7 +114,7 @@ void GridMatrix::inGrid(const Offset& o, F&& f) const {
 // A row takes from the rows that it is joined with, and gives to them: every block is read once.
 void GridMatrix::multiply(const SingleVectors& x, SingleVectors& y) const {
   const std::size_t columns = std::size_t(shape_.columns);
-  parallelFor(std::size_t(shape_.layers) * shape_.rows, [&](std::size_t line) {
+  forEachLine(shape_, [&](std::size_t line) {
     const std::size_t l = line / std::size_t(shape_.rows), node = line * columns;
     setSymmetricProducts(columns, {&diagonal_[l][place(int(line) % shape_.rows, 0, 6)], columns}, rowOf(x, node), rowOf(y, node));
   });
@@ -134,7 +138,7 @@ void GridMatrix::multiply(const SingleVectors& x, SingleVectors& y) const {
 
 void GridMatrix::multiplyInverseDiagonal(const SingleVectors& x, SingleVectors& y) const {
   const std::size_t columns = std::size_t(shape_.columns);
-  parallelFor(std::size_t(shape_.layers) * shape_.rows, [&](std::size_t line) {
+  forEachLine(shape_, [&](std::size_t line) {
     const std::size_t l = line / std::size_t(shape_.rows), node = line * columns;
     setSymmetricProducts(columns, {&inverse_[l][place(int(line) % shape_.rows, 0, 6)], columns}, rowOf(x, node), rowOf(y, node));
   });

@@ -5,6 +5,7 @@
 #include "plugins/solver/multigrid/block_rows.h"
 
 #include "kernel/physics/hessian.h"
+#include "kernel/physics/workers.h"
 
 #include <atomic>
 #include <memory>
@@ -28,6 +29,16 @@ struct GridShape {
     return {line / rows, line % rows, int(number % columns)};
   }
 };
+
+/// Calls f(line) for all rows of all layers, on several threads where a grid has points enough.
+template <class F>
+void forEachLine(GridShape shape, F&& f) {
+  constexpr std::size_t kPoints = 2048;   // that are worth a thread
+  const std::size_t length = 1 + kPoints / std::size_t(shape.columns);
+  forEachPiece(std::size_t(shape.layers) * shape.rows, length, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t line = begin; line < end; ++line) f(line);
+  });
+}
 
 class GridMatrix {
  public:
