@@ -14,6 +14,7 @@ namespace {
 
 // Between load steps it is enough to be near.
 constexpr double kLooseTolerance = 1e-2;
+constexpr double kLooseAccuracy = 0.1;   // of the step's way
 constexpr double kLeastPartOfStep = 1.0 / 4;
 // Single precision errs by less than a thousandth of this, mm, so that it is enough where such an accuracy is asked for.
 constexpr double kRoughAccuracy = 0.01;
@@ -92,7 +93,9 @@ class QuasiStatic final : public Session {
       const bool isFree = isLast && movement.isFromStart();
       const int left = most - solution.iterations;
       const double tolerance = isFree ? settings_.tolerance : std::max(settings_.tolerance, kLooseTolerance);
-      Outcome outcome = minimise(trial, tolerance, isFree ? left : std::min(left, stepIterations_), next, solution, host);
+      const bool isLoose = !isLast && acceleration_.accuracy > 0;
+      const double accuracy = isLoose ? std::max(acceleration_.accuracy, kLooseAccuracy * (next - t) * way) : acceleration_.accuracy;
+      Outcome outcome = minimise(trial, {tolerance, isFree ? left : std::min(left, stepIterations_), accuracy}, next, solution, host);
       const bool isExhausted = solution.iterations >= most;
       const bool isNear = outcome == Outcome::converged || (outcome == Outcome::stalled && end_.isWithin(kLooseTolerance));
       const bool isOnCourse = isLeast || !isPredicted_ || movement.isFromStart() ||
@@ -101,7 +104,7 @@ class QuasiStatic final : public Session {
         x = std::move(trial);
         t = next;
         if (isLast && isNear && settings_.tolerance < tolerance && !isAccurate(outcome, tolerance))
-          outcome = minimise(x, settings_.tolerance, most - solution.iterations, 1, solution, host);
+          outcome = minimise(x, {settings_.tolerance, most - solution.iterations, acceleration_.accuracy}, 1, solution, host);
         solution.status = isLast ? statusOf(outcome) : SolveStatus::stalled;
         if (isLast || isExhausted || !isNear) break;
         step = std::min(wholeStep, 2 * step);
@@ -121,7 +124,7 @@ class QuasiStatic final : public Session {
       solution.message = "the energy falls no further; the largest force stays at the " + system_.nodeName(end_.residual.node);
   }
 
-  Outcome minimise(NodeVectors& x, double tolerance, int iterations, double part, Solution& solution, Host& host) {
+  Outcome minimise(NodeVectors& x, Minimiser::Limits limits, double part, Solution& solution, Host& host) {
     Watch watch;
     double before = INFINITY;   // the objective before the last step
     watch.poll = [&] { host.checkCancel(); };
@@ -131,18 +134,16 @@ class QuasiStatic final : public Session {
       solution.energyHistory.push_back(now.energy);
       if (before > 0) solution.energyGrowth = std::max(solution.energyGrowth, (now.value - before) / before);
       before = now.value;
-      host.progress(progress(now.relativeResidual(), tolerance) * part,
+      host.progress(progress(now.relativeResidual(), limits.tolerance) * part,
                     fmt::format("iteration {}, {:.0f} % of the way, residual {:.1e}", solution.iterations, 100 * part, now.relativeResidual()));
     };
-    Minimiser::Limits limits{tolerance, iterations, acceleration_.accuracy};
     const int first = solution.iterations;
     const Outcome outcome = minimiser_->minimise(objective_, x, end_, limits, solution.iterations, watch);
-    const int left = iterations - (solution.iterations - first);
-    if (outcome != Outcome::stalled || objective_.precision() == Precision::full || left <= 0) return outcome;
+    limits.iterations -= solution.iterations - first;
+    if (outcome != Outcome::stalled || objective_.precision() == Precision::full || limits.iterations <= 0) return outcome;
     // Rounding may have hidden the way down.
     objective_.setPrecision(Precision::full);
     before = INFINITY;
-    limits.iterations = left;
     return minimiser_->minimise(objective_, x, end_, limits, solution.iterations, watch);
   }
 
