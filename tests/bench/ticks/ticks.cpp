@@ -103,20 +103,28 @@ void fromRest(benchmark::State& state) {
   state.counters["reference_residual"] = solved.before.relativeResidual;
 }
 
-// A slider: the skin becomes 20 % stiffer, or softer again. Counted is all of it, from the new constants to the new rest: terms, a session that
-// takes over what the last one prepared, and the solve from where the wall was.
+// A slider: the skin becomes 20 % stiffer, or softer again. Counted is all of it, from the new constants to the new rest: points copied, new
+// terms, a session that takes over what the last one prepared, and the solve from where the wall was.
 void stiffnessSlider(benchmark::State& state) {
   setThreads(2);
   const int side = int(state.range(0));
   QuietHost host;
+  const System points = fineGrid(side);
+  const auto wall = [&](double skin) {
+    auto made = std::make_unique<System>();
+    made->rows = points.rows, made->columns = points.columns, made->freeNodes = points.freeNodes;
+    made->rest = points.rest, made->mass = points.mass;
+    setTerms(*made, 2, skin);
+    return made;
+  };
   double skin = 1;
-  auto system = std::make_unique<System>(fineWall(side, 2, skin));
+  auto system = wall(skin);
   auto session = multigrid(*system, 1e-12, 0.1);
   const Drive drive = bump(*system, 28);
   Solution found = session->solve(drive, &Solved::of(side).before.positions, host);
   for (auto _ : state) {
     skin = skin == 1 ? 1.2 : 1;
-    auto next = std::make_unique<System>(fineWall(side, 2, skin));
+    auto next = wall(skin);
     auto nextSession = multigrid(*next, 1e-12, 0.1);
     nextSession->takeOver(*session);
     session = std::move(nextSession), system = std::move(next);

@@ -11,31 +11,43 @@
 
 namespace pectora {
 
-// n x n points 2 mm apart and 20 mm thick with the paper's stencil, each pleura point tied to three anchors. `reach`: of the oblique
-// springs, in points; `skin`: stiffness of the springs within the skin, N/mm, where the others have 1.
-inline System fineWall(int n, int reach = 2, double skin = 1) {
+// n x n points 2 mm apart and 20 mm thick, each pleura point with three anchors around it; without terms.
+inline System fineGrid(int n) {
   System system;
   system.rows = system.columns = n;
-  const std::size_t layer = std::size_t(n) * n;
+  const std::size_t layer = system.points();
   system.freeNodes = 2 * layer;
   system.rest = NodeVectors(5 * layer);
-  std::vector<NodeSpring> ties;
   for (std::size_t i = 0; i < 5 * layer; ++i) {
     const std::size_t point = i % layer, anchor = i / layer;
     const double turn = 2.0 * M_PI / 3 * double(anchor);
     const Vec3 away = anchor < 2 ? Vec3{0, anchor == 0 ? -20.0 : 0.0, 0} : Vec3{8 * std::cos(turn), 4, 8 * std::sin(turn)};
     system.rest.set(i, Vec3{2.0 * double(point % n), 0, 2.0 * double(point / n)} + away);
-    if (anchor >= 2) ties.push_back({layer + point, i, 5});
   }
   system.mass.assign(system.freeNodes, 1e-4);
+  return system;
+}
+
+// Gives it the paper's stencil, and ties every pleura point to its anchors. `reach`: of the oblique springs, in points; `skin`: stiffness of
+// the springs within the skin, N/mm, where the others have 1.
+inline void setTerms(System& system, int reach = 2, double skin = 1) {
   std::vector<StencilSpring> stencil;
   for (int r = -reach; r <= reach; ++r)
     for (int c = -reach; c <= reach; ++c) {
       stencil.push_back({Layer::outer, Layer::inner, r, c, 1});
       if (std::max(std::abs(r), std::abs(c)) <= 2 && (r > 0 || (r == 0 && c > 0))) stencil.push_back({Layer::outer, Layer::outer, r, c, skin});
     }
+  std::vector<NodeSpring> ties;
+  for (std::size_t anchor = 0; anchor < 3 * system.points(); ++anchor)
+    ties.push_back({system.node(1, anchor % system.points()), system.anchorNode(anchor), 5});
+  system.terms.clear();
   system.terms.push_back(makeLatticeTerm("lattice", system, stencil));
   system.terms.push_back(makeSpringTerm("ties", system, ties));
+}
+
+inline System fineWall(int n, int reach = 2, double skin = 1) {
+  System system = fineGrid(n);
+  setTerms(system, reach, skin);
   return system;
 }
 
