@@ -45,7 +45,7 @@ class FollowingHost final : public LiveHost {
 std::unique_ptr<Solver> makeSolver(Registry& registry, const PluginChoice& choice);
 
 /// From so many skin points on, what moves is solved by multigrid, whose steps do not grow with the wall.
-inline constexpr int kFineWall = 5000;
+inline constexpr int kFineWall = 1000;
 /// Movements end when no point is estimated to be farther than this from rest, mm, or at this tolerance: less is not seen.
 inline constexpr double kLiveAccuracy = 0.1, kLiveTolerance = 1e-4;
 

@@ -61,7 +61,9 @@ class QuasiStatic final : public Session {
     solution.residual = end_.residual.force;
     solution.relativeResidual = end_.relativeResidual();
     solution.energy = end_.energy;
-    end_.gradient = {};   // between solves it is but room
+    // Between solves these are but room.
+    end_.gradient = {};
+    if (!acceleration_.predictsFromStart) predictor_.reset();
     return solution;
   }
 

@@ -109,6 +109,10 @@ void Collector::run(std::size_t a, std::size_t b, std::size_t count, const float
   };
   if (coarse.columns == fine_.columns) return addToRows(p.column, q.column, count, entries);
 
+  // Entries that lie in one place, as of symmetric blocks, are summed once.
+  int source[9];
+  for (int e = 0; e < 9; ++e) source[e] = int(std::find(entries, entries + e, entries[e]) - entries);
+
   // First along the columns. Between the coarse columns of both ends lie `least` to `least` + 2 others: for every such distance there is a run
   // of blocks, which begins at coarse column `first`.
   const int least = halfDown(between - 1), first = p.column / 2;
@@ -129,7 +133,8 @@ void Collector::run(std::size_t a, std::size_t b, std::size_t count, const float
       for (int j = 0; j <= int(isOtherOdd); ++j) {
         const int distance = otherHalf + j - i;
         isUsed[distance - least] = true;
-        for (int e = 0; e < 9; ++e) addEverySecond(blocks, entries[e] + begin, part, blocksOf(distance, e) + half + i);
+        for (int e = 0; e < 9; ++e)
+          if (source[e] == e) addEverySecond(blocks, entries[e] + begin, part, blocksOf(distance, e) + half + i);
       }
   }
   // Then along the rows. Of a run, coarse columns beyond the grid hold nothing.
@@ -138,7 +143,7 @@ void Collector::run(std::size_t a, std::size_t b, std::size_t count, const float
     const int distance = least + d, begin = std::max({first, 0, -distance});
     const int end = std::min({first + int(length), coarse.columns, coarse.columns - distance});
     const float* blocks[9];
-    for (int e = 0; e < 9; ++e) blocks[e] = blocksOf(distance, e) + (begin - first);
+    for (int e = 0; e < 9; ++e) blocks[e] = blocksOf(distance, source[e]) + (begin - first);
     if (begin < end) addToRows(begin, begin + distance, std::size_t(end - begin), blocks);
   }
 }

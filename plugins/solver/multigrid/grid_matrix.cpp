@@ -9,7 +9,7 @@ namespace pectora {
 namespace {
 
 // Fewer points than this are not worth a second thread.
-constexpr int kBlockPoints = 1024;
+constexpr int kBlockPoints = 512;
 
 }  // namespace
 
@@ -119,9 +119,8 @@ void GridMatrix::multiply(const SingleVectors& x, SingleVectors& y) const {
     setSymmetricProducts(columns, {&diagonal_[l][place(int(line) % shape_.rows, 0, 6)], columns}, rowOf(x, node), rowOf(y, node));
   });
   forEachRowBlock([&](int begin, int end) {
-    for (int row = begin; row < end; ++row)
-      for (const auto& o : offsets_) {
-        if (row + o->rows >= shape_.rows) continue;
+    for (const auto& o : offsets_)
+      for (int row = begin; row < std::min(end, shape_.rows - o->rows); ++row)
         inGrid(*o, [&](int first, std::size_t count) {
           const BlockRow blocks{&o->blocks[place(row, first, 9)], columns};
           const std::size_t near = shape_.number(o->layer, row, first), far = shape_.number(o->otherLayer, row + o->rows, first + o->columns);
@@ -132,7 +131,6 @@ void GridMatrix::multiply(const SingleVectors& x, SingleVectors& y) const {
             addBlockProducts(count, blocks, true, rowOf(x, near), rowOf(y, far));
           }
         });
-      }
   });
 }
 

@@ -47,12 +47,29 @@ void setRandom(SingleVectors& v) {
 }  // namespace
 
 struct Hierarchy::Level {
-  explicit Level(GridShape shape) : matrix(shape), roughest(shape.points()) {}
+  explicit Level(GridShape shape) : matrix(shape) {}
   GridMatrix matrix;
   SingleVectors x, b;                 // of coarse grids
   SingleVectors residual, step;       // of those that see what others left
-  SingleVectors roughest;             // where D^-1 A acts most strongly
+  SingleVectors roughest;             // where D^-1 A acts most strongly; kept where that is followed from matrix to matrix
   float highest = 2;                  // of the spectrum of D^-1 A
+
+  Product product() const { return [this](const SingleVectors& in, SingleVectors& out) { matrix.multiply(in, out); }; }
+  void findHighest(int steps, const Product& multiply) {
+    SingleVectors& v = roughest;
+    SingleVectors product(v.size());
+    double factor = 2;
+    for (int n = 0; n < steps; ++n) {
+      const double size = largest(v);
+      multiply(v, product);
+      matrix.multiplyInverseDiagonal(product, v);
+      factor = largest(v) / size;
+      if (!(factor > 0 && std::isfinite(factor))) break;
+      combine(0, v, float(1 / (factor * size)), v);
+    }
+    if (!std::isfinite(factor)) setRandom(v);
+    highest = 1.1f * float(std::isfinite(factor) ? factor : 2);
+  }
 };
 
 // The inverse of the coarsest matrix.
@@ -107,26 +124,26 @@ void Hierarchy::build(const Hessian& hessian, std::size_t nodes, const Product& 
   }
   coarsest_ = std::make_unique<Coarsest>(levels_.back()->matrix);
 
-  // The upper ends of the spectra, by power iteration: from a start that is rough everywhere, or from where the last one ended.
+  // The upper ends of the spectra, by power iteration: from a start that is rough everywhere, or from where the last one ended. On the finest
+  // levels they are but weights, and those of similar matrices do.
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = *levels_[i];
-    SingleVectors &v = level.roughest, product(v.size());
-    if (before.empty()) setRandom(v);
-    else v = std::move(before[i]->roughest);
-    double factor = 2;
-    for (int n = before.empty() ? 0 : kPowerSteps - kPowerStepsAgain; n < kPowerSteps; ++n) {
-      const double size = largest(v);
-      if (i == 0) multiply(v, product);
-      else level.matrix.multiply(v, product);
-      level.matrix.multiplyInverseDiagonal(product, v);
-      factor = largest(v) / size;
-      if (!(factor > 0 && std::isfinite(factor))) break;
-      combine(0, v, float(1 / (factor * size)), v);
+    const bool isAdditive = i < kAdditiveLevels;
+    if (before.empty()) {
+      level.roughest = SingleVectors(level.matrix.shape().points());
+      setRandom(level.roughest);
+      level.findHighest(kPowerSteps, i == 0 ? multiply : level.product());
+    } else {
+      level.highest = before[i]->highest;
+      level.roughest = std::move(before[i]->roughest);
+      if (!isAdditive) level.findHighest(kPowerStepsAgain, level.product());
     }
-    if (!std::isfinite(factor)) setRandom(v);
-    level.highest = 1.1f * float(std::isfinite(factor) ? factor : 2);
-    if (i < kAdditiveLevels) level.matrix.keepInverseDiagonal();
-    else level.residual = level.step = SingleVectors(v.size());
+    if (isAdditive) {
+      level.matrix.keepInverseDiagonal();
+      level.roughest = SingleVectors();
+    } else {
+      level.residual = level.step = SingleVectors(level.roughest.size());
+    }
   }
 }
 

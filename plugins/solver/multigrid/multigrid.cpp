@@ -17,16 +17,20 @@ constexpr int kManyCycles = 12;
 
 class MultigridMetric final : public Metric {
  public:
-  explicit MultigridMetric(const System& system) : system_(system), hessian_(makeHessian(system)), shape_(shapeOf(system)), hierarchy_(shape_) {
-    if (!hessian_) throw Error("an effect has no second derivative").advise("Choose solver.lbfgs, which does without");
+  explicit MultigridMetric(const System& system) : system_(system), shape_(shapeOf(system)), hierarchy_(shape_) {
+    if (!Newton::isFor(system)) throw Error("an effect has no second derivative").advise("Choose solver.lbfgs, which does without");
   }
 
   bool refresh(const NodeVectors& positions) override {
     const bool isGood = hierarchy_.isBuilt() && cycles_ <= kManyCycles;
     cycles_ = 0;
     if (isGood) return false;
-    hessian_->linearise(positions, true);
-    hierarchy_.build(*hessian_, system_.rest.size(), product());
+    const std::unique_ptr<Hessian> hessian = makeHessian(system_);
+    hessian->linearise(positions, true);
+    hierarchy_.build(*hessian, system_.rest.size(), [&](const SingleVectors& in, SingleVectors& out) {
+      out.clear();
+      hessian->multiplySingle(in, out);
+    });
     return true;
   }
 
@@ -48,15 +52,8 @@ class MultigridMetric final : public Metric {
           .advise("Choose another solver, such as solver.newton");
     return {system.layers, system.rows, system.columns};
   }
-  Hierarchy::Product product() const {
-    return [this](const SingleVectors& in, SingleVectors& out) {
-      out.clear();
-      hessian_->multiplySingle(in, out);
-    };
-  }
 
   const System& system_;
-  std::unique_ptr<Hessian> hessian_;
   GridShape shape_;
   mutable Hierarchy hierarchy_;
   mutable int cycles_ = 0;
